@@ -1,0 +1,1 @@
+"""Brings the suite up: coordinator, launch files, parameter files, displays."""

@@ -1,0 +1,69 @@
+"""A block on the table, seen from above."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from singulation_core.errors import InvalidInputError
+from singulation_core.polygon import (
+    FloatArray,
+    area_centroid,
+    bounding_radius,
+    signed_area,
+    validated_outline,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarObject:
+    """A convex polygon with its area centroid as centre of mass.
+
+    Args:
+        id: unique within its arrangement, 0 <= id < 2**32.
+        outline: (k, 2) vertices, convex, counter-clockwise, metres, frame of the arrangement.
+        height: of the top face above the table [m], 0 if unknown.
+        point_count: points of the cloud behind it, 0 if it was not seen by a camera.
+        confidence: 0..1.
+
+    Raises:
+        InvalidInputError: naming the object and what is wrong with it.
+    """
+
+    id: int
+    outline: FloatArray
+    height: float = 0.0
+    point_count: int = 0
+    confidence: float = 1.0
+    centroid: FloatArray = field(init=False, repr=False)
+    bounding_radius: float = field(init=False, repr=False)
+    area: float = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        name = f"object {self.id}"
+        if not (0 <= self.id < 2**32):
+            raise InvalidInputError(f"{name}: id out of range, need 0 <= id < 2**32")
+        if not (0.0 <= self.height < float("inf")):
+            raise InvalidInputError(f"{name}: height {self.height} m, need a finite one >= 0")
+        if not (0.0 <= self.confidence <= 1.0):
+            raise InvalidInputError(f"{name}: confidence {self.confidence}, need 0..1")
+        outline = validated_outline(self.outline, name)
+        centre = area_centroid(outline)
+        centre.setflags(write=False)
+        object.__setattr__(self, "outline", outline)
+        object.__setattr__(self, "centroid", centre)
+        object.__setattr__(self, "bounding_radius", bounding_radius(outline, centre))
+        object.__setattr__(self, "area", signed_area(outline))
+
+    def moved(self, translation: ArrayLike, rotation: float = 0.0) -> "PlanarObject":
+        """The same block turned by ``rotation`` [rad] about its centroid, then shifted by (2,) [m]."""
+        cosine, sine = np.cos(rotation), np.sin(rotation)
+        turn = np.array(((cosine, sine), (-sine, cosine)))
+        outline = (self.outline - self.centroid) @ turn + self.centroid
+        return PlanarObject(
+            self.id,
+            outline + np.asarray(translation, dtype=np.float64),
+            self.height,
+            self.point_count,
+            self.confidence,
+        )

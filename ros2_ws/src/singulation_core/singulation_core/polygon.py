@@ -1,0 +1,139 @@
+"""Geometry of convex polygons in the plane. Outlines are (k, 2) float64, counter-clockwise, metres."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from singulation_core.errors import InvalidInputError
+
+FloatArray = NDArray[np.float64]
+
+# Sine of the largest inward bend at a vertex that still counts as rounding of a straight edge.
+_CONVEXITY_SLACK = 1e-6
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Two-dimensional cross product over the last axis of (..., 2) arrays."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def signed_area(outline: FloatArray) -> float:
+    """Area of a (k, 2) polygon, positive when counter-clockwise [m^2]."""
+    shifted = outline - outline[0]
+    return 0.5 * float(np.sum(cross(shifted, np.roll(shifted, -1, axis=0))))
+
+
+def area_centroid(outline: FloatArray) -> FloatArray:
+    """Centroid of the area of a (k, 2) polygon, shape (2,) [m]."""
+    shifted = outline - outline[0]
+    following = np.roll(shifted, -1, axis=0)
+    weights = cross(shifted, following)
+    return np.asarray(
+        outline[0] + (weights[:, None] * (shifted + following)).sum(axis=0) / (3.0 * weights.sum())
+    )
+
+
+def bounding_radius(outline: FloatArray, centre: FloatArray) -> float:
+    """Largest distance of ``centre`` to a vertex [m] (paper, section V-A)."""
+    return float(np.sqrt(((outline - centre) ** 2).sum(axis=1).max()))
+
+
+def validated_outline(outline: ArrayLike, name: str = "outline") -> FloatArray:
+    """A read-only (k, 2) float64 copy of a convex, counter-clockwise outline.
+
+    Raises:
+        InvalidInputError: fewer than three vertices, not finite, repeated vertices, no area,
+            clockwise, self-intersecting or not convex; the text starts with ``name``.
+    """
+    points = np.array(outline, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
+        raise InvalidInputError(f"{name}: shape {points.shape}, need (k >= 3, 2)")
+    if not np.isfinite(points).all():
+        raise InvalidInputError(f"{name}: vertex {_first_bad(points)} is not finite")
+    edges = np.roll(points, -1, axis=0) - points
+    lengths = np.hypot(edges[:, 0], edges[:, 1])
+    size = float(np.ptp(points, axis=0).max())
+    if not (lengths.min() > 1e-9 * size):
+        raise InvalidInputError(f"{name}: vertex {int(lengths.argmin())} is repeated or all coincide")
+    area = signed_area(points)
+    if not (abs(area) > 1e-9 * size * size):
+        raise InvalidInputError(f"{name}: area {area:.3g} m^2, the vertices lie on one line")
+    if area < 0.0:
+        raise InvalidInputError(f"{name}: clockwise, need counter-clockwise")
+    _require_convex(edges / lengths[:, None], name)
+    points.setflags(write=False)
+    return points
+
+
+def _first_bad(points: FloatArray) -> int:
+    return int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+
+
+def _require_convex(directions: FloatArray, name: str) -> None:
+    """Every turn to the left and one full turn in all, else it crosses itself."""
+    following = np.roll(directions, -1, axis=0)
+    sines = cross(directions, following)
+    cosines = (directions * following).sum(axis=1)
+    if not (sines.min() >= -_CONVEXITY_SLACK):
+        vertex = (int(sines.argmin()) + 1) % len(directions)
+        raise InvalidInputError(f"{name}: not convex at vertex {vertex}")
+    turns = float(np.arctan2(sines, cosines).sum()) / (2.0 * np.pi)
+    if not (abs(turns - 1.0) < 1e-3):
+        raise InvalidInputError(f"{name}: crosses itself ({turns:.1f} turns, need 1)")
+
+
+def convex_hull(points: ArrayLike) -> FloatArray:
+    """Counter-clockwise convex hull of (m, 2) points without collinear vertices, (k, 2).
+
+    Andrew's monotone chain. Fewer than three rows come back for points on one line.
+    """
+    ordered = np.unique(np.asarray(points, dtype=np.float64), axis=0)
+    if len(ordered) < 3:
+        return ordered
+    return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1])
+
+
+def _chain(points: FloatArray) -> list[FloatArray]:
+    chain: list[FloatArray] = []
+    for point in points:
+        while len(chain) >= 2 and cross(chain[-1] - chain[-2], point - chain[-2]) <= 0.0:
+            chain.pop()
+        chain.append(point)
+    return chain
+
+
+def contains(outline: FloatArray, points: ArrayLike, margin: float = 0.0) -> NDArray[np.bool_]:
+    """Which of (m, 2) points lie inside the convex outline, at least ``margin`` [m] from its edges."""
+    tested = np.atleast_2d(np.asarray(points, dtype=np.float64))
+    normals, offsets = inward_half_planes(outline)
+    return np.asarray((tested @ normals.T - offsets >= margin).all(axis=1))
+
+
+def inward_half_planes(outline: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Unit inward normals (k, 2) and offsets (k,): inside is ``normal . x >= offset``."""
+    edges = np.roll(outline, -1, axis=0) - outline
+    normals = np.column_stack((-edges[:, 1], edges[:, 0]))
+    normals /= np.hypot(normals[:, 0], normals[:, 1])[:, None]
+    return normals, (normals * outline).sum(axis=1)
+
+
+def separation(first: FloatArray, second: FloatArray) -> float:
+    """Signed gap between two convex outlines [m]: distance if apart, minus the penetration depth if not."""
+    deepest = max(_best_axis(first, second), _best_axis(second, first))
+    if deepest <= 0.0:
+        return deepest
+    return min(_vertex_edge_distance(first, second), _vertex_edge_distance(second, first))
+
+
+def _best_axis(first: FloatArray, second: FloatArray) -> float:
+    """Largest separation along the edge normals of ``first``."""
+    normals, offsets = inward_half_planes(first)
+    return float((offsets[:, None] - normals @ second.T).min(axis=1).max())
+
+
+def _vertex_edge_distance(polygon: FloatArray, vertices: FloatArray) -> float:
+    """Smallest distance of any of the vertices to any edge of the polygon."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    relative = vertices[:, None, :] - polygon[None, :, :]
+    along = (relative * edges).sum(axis=2) / (edges**2).sum(axis=1)
+    nearest = np.clip(along, 0.0, 1.0)[..., None] * edges
+    return float(np.sqrt(((relative - nearest) ** 2).sum(axis=2).min()))

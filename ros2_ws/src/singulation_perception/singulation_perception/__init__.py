@@ -1,0 +1,1 @@
+"""From a PhoXi point cloud to convex polygons on the table."""

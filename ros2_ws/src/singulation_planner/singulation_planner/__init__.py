@@ -1,0 +1,1 @@
+"""Push policies: ClusterPush, the other policies of the paper, and our own."""

@@ -1,0 +1,23 @@
+from setuptools import find_packages, setup
+
+PACKAGE = "singulation_sim"
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    zip_safe=False,
+    maintainer="Singulation maintainers",
+    maintainer_email="maintainers@users.noreply.github.com",
+    description="Stand-ins for the hardware: simulated YuMi driver, table physics, PhoXi camera.",
+    license="Apache-2.0",
+    entry_points={"console_scripts": [
+        "sim_cell = singulation_sim.sim_cell:main",
+    ]},
+)

@@ -1,0 +1,1 @@
+"""Stand-ins for the hardware: simulated YuMi driver, table physics, PhoXi camera."""

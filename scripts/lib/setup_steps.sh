@@ -1,0 +1,113 @@
+# Sourced by scripts/setup: its three steps. A step leaves its stamp last, so an interrupted one is done again.
+# shellcheck shell=bash
+
+logged() { # log name, command: its output goes to the log, and to the terminal only when it fails
+  local log=$WORKSPACE/log/$1
+  mkdir -p "$WORKSPACE/log"
+  if "${@:2}" >"$log" 2>&1 </dev/null; then return 0; fi
+  tail -n 40 "$log" >&2
+  say "the whole log: $log"
+  return 1
+}
+
+needed_packages() { # route
+  if [[ $1 == pypi ]]; then
+    command -v cmake >/dev/null || echo cmake
+    command -v g++ >/dev/null || echo g++
+    command -v make >/dev/null || echo make
+  fi
+  local libraries
+  libraries=$(ldconfig -p 2>/dev/null || /sbin/ldconfig -p)
+  while read -r library package; do # what Open3D loads
+    [[ $libraries == *"$library"* ]] || echo "$package"
+  done <<'LIST'
+libusb-1.0.so.0 libusb-1.0-0
+libgomp.so.1 libgomp1
+libGL.so.1 libgl1
+libEGL.so.1 libegl1
+libX11.so.6 libx11-6
+LIST
+}
+
+ensure_system_packages() { # route
+  local missing command
+  missing=$(needed_packages "$1" | tr '\n' ' ')
+  [[ -n ${missing// /} ]] || return 0
+  command="apt-get update && apt-get install -y --no-install-recommends ${missing% }"
+  if [[ $SYSTEM_PACKAGES == install ]] && command -v apt-get >/dev/null; then
+    if [[ $(id -u) == 0 ]]; then
+      say "installing Debian/Ubuntu packages: $missing"
+      DEBIAN_FRONTEND=noninteractive logged apt.txt bash -c "$command" && return 0
+    elif sudo -n true 2>/dev/null; then
+      say "installing Debian/Ubuntu packages with sudo: $missing"
+      logged apt.txt sudo -n env DEBIAN_FRONTEND=noninteractive bash -c "$command" && return 0
+    fi
+  fi
+  fail "packages are missing. Install them with this command, then run again:
+       sudo sh -c '$command'"
+}
+
+requirement_files() { # route
+  if [[ $1 == sourced ]]; then
+    echo "$ROOT/requirements/cell.txt" "$ROOT/requirements/development.txt"
+  else
+    echo "$ROOT/requirements/ros.txt" "$ROOT/requirements/libraries.txt" "$ROOT/requirements/development.txt"
+  fi
+}
+
+ensure_environment() { # route
+  local route=$1 files wanted python options=()
+  read -r -a files <<<"$(requirement_files "$route")"
+  wanted="$route $(cat "${files[@]}" "$ROOT/requirements/constraints.txt" | cksum)"
+  if [[ $(cat "$VENV/.stamp" 2>/dev/null) == "$wanted" ]] && "$VENV/bin/python" -c '' 2>/dev/null; then
+    [[ $QUIET == yes ]] || say "environment is up to date ($VENV)"
+    return
+  fi
+  if [[ $route == sourced ]]; then python=$(find_python '3\.12'); options=(--system-site-packages)
+  else python=$(find_python '3\.1[123]'); fi
+  say "making the virtual environment .venv with $python ($("$python" --version)), ROS: $route"
+  "$VENV/bin/python" -c 'import pip' 2>/dev/null || "$python" -m venv --clear "${options[@]}" "$VENV"
+  say "installing Python packages (about 1.3 GB on disk, 1 to 3 minutes)"
+  if [[ $route == pypi ]]; then
+    local constraint=(-c "$ROOT/requirements/constraints.txt")
+  else
+    local constraint=()
+  fi
+  logged pip.txt "$VENV/bin/python" -m pip install --disable-pip-version-check --no-input "${constraint[@]}" \
+    "${files[@]/#/-r}" || fail "pip could not install the packages; its words are above"
+  [[ $route == sourced ]] || "$VENV/bin/python" "$ROOT/scripts/lib/mend_cmake_paths.py" >&2
+  printf '%s\n' "$route" >"$VENV/.route"
+  rm -rf "$WORKSPACE/build" "$WORKSPACE/install"
+  printf '%s\n' "$wanted" >"$VENV/.stamp"
+}
+
+build_inputs() { # what a build depends on; Python sources are linked, so their edits need none
+  cd "$WORKSPACE/src" && find . \( -name package.xml -o -name 'setup.*' -o -name CMakeLists.txt -o -name '*.msg' -o -name '*.srv' \
+    -o -name '*.action' -o -path '*/launch/*' -o -path '*/config/*' -o -path '*/urdf/*' -o -path '*/rviz/*' \) -type f -print0 |
+    sort -z | xargs -0 cksum
+}
+
+ensure_build() { # route
+  local wanted
+  wanted="$ROOT $(cat "$VENV/.stamp") $(build_inputs | cksum)"
+  if [[ $(cat "$WORKSPACE/install/.stamp" 2>/dev/null) == "$wanted" ]]; then
+    [[ $QUIET == yes ]] || say "workspace is up to date ($WORKSPACE/install)"
+    return
+  fi
+  say "building the workspace with colcon (about half a minute the first time)"
+  [[ $(cat "$WORKSPACE/install/.root" 2>/dev/null) == "$ROOT" ]] || rm -rf "$WORKSPACE/build" "$WORKSPACE/install"
+  mkdir -p "$WORKSPACE/install"
+  printf '%s\n' "$ROOT" >"$WORKSPACE/install/.root"
+  rm -f "$WORKSPACE/install/.stamp"
+  logged build.txt colcon_build "$1" || fail "colcon build failed; its words are above"
+  printf '%s\n' "$wanted" >"$WORKSPACE/install/.stamp"
+}
+
+colcon_build() ( # route; in a subshell, for its folder and environment
+  cd "$WORKSPACE" || exit 1
+  export PATH=$VENV/bin:$PATH VIRTUAL_ENV=$VENV
+  [[ $1 != pypi ]] || export AMENT_PREFIX_PATH=$VENV CMAKE_PREFIX_PATH=$VENV
+  # shellcheck disable=SC2086
+  colcon build --symlink-install --event-handlers console_direct+ \
+    --cmake-args -DBUILD_TESTING=OFF -DPython3_EXECUTABLE="$VENV/bin/python" -DPython3_FIND_VIRTUALENV=ONLY
+)
