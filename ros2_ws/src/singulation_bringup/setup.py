@@ -17,7 +17,9 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     description="Brings the suite up: coordinator, launch files, parameter files, displays.",
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        "singulate_node = singulation_bringup.singulate_node:main",
-    ]},
+    entry_points={
+        "console_scripts": [
+            "singulate_node = singulation_bringup.singulate_node:main",
+        ]
+    },
 )

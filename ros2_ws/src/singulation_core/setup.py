@@ -15,7 +15,7 @@ setup(
     zip_safe=False,
     maintainer="Singulation maintainers",
     maintainer_email="maintainers@users.noreply.github.com",
-    description="Vocabulary of planar singulation: objects, arrangements, pushes, singulation distance, push physics, message conversions.",
+    description="Vocabulary of planar singulation, push physics, message conversions.",
     license="Apache-2.0",
     entry_points={"console_scripts": []},
 )

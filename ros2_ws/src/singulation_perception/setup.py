@@ -17,8 +17,10 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     description="From a PhoXi point cloud to convex polygons on the table.",
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        "perception_node = singulation_perception.perception_node:main",
-        "replay_clouds = singulation_perception.replay_clouds:main",
-    ]},
+    entry_points={
+        "console_scripts": [
+            "perception_node = singulation_perception.perception_node:main",
+            "replay_clouds = singulation_perception.replay_clouds:main",
+        ]
+    },
 )

@@ -17,8 +17,10 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     description="Push policies: ClusterPush, the other policies of the paper, and our own.",
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        "planner_node = singulation_planner.planner_node:main",
-        "benchmark = singulation_planner.benchmark.main:main",
-    ]},
+    entry_points={
+        "console_scripts": [
+            "planner_node = singulation_planner.planner_node:main",
+            "benchmark = singulation_planner.benchmark.main:main",
+        ]
+    },
 )

@@ -17,7 +17,9 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     description="Stand-ins for the hardware: simulated YuMi driver, table physics, PhoXi camera.",
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        "sim_cell = singulation_sim.sim_cell:main",
-    ]},
+    entry_points={
+        "console_scripts": [
+            "sim_cell = singulation_sim.sim_cell:main",
+        ]
+    },
 )

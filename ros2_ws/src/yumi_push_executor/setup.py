@@ -17,7 +17,9 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     description="From a push to a supervised closed-jaw, jaw-side or open-jaw motion of an ABB YuMi.",
     license="Apache-2.0",
-    entry_points={"console_scripts": [
-        "executor_node = yumi_push_executor.executor_node:main",
-    ]},
+    entry_points={
+        "console_scripts": [
+            "executor_node = yumi_push_executor.executor_node:main",
+        ]
+    },
 )

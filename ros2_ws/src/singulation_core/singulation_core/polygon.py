@@ -27,9 +27,7 @@ def area_centroid(outline: FloatArray) -> FloatArray:
     shifted = outline - outline[0]
     following = np.roll(shifted, -1, axis=0)
     weights = cross(shifted, following)
-    return np.asarray(
-        outline[0] + (weights[:, None] * (shifted + following)).sum(axis=0) / (3.0 * weights.sum())
-    )
+    return np.asarray(outline[0] + (weights[:, None] * (shifted + following)).sum(axis=0) / (3.0 * weights.sum()))
 
 
 def bounding_radius(outline: FloatArray, centre: FloatArray) -> float:

@@ -1,4 +1,4 @@
-"""Rigid transforms as 4x4 float64 matrices; ``a_from_b @ point_b`` gives the point in frame a. Quaternions are x, y, z, w."""
+"""Rigid transforms as 4x4 float64 matrices; ``a_from_b @ point_b`` is the point in frame a. Quaternions: x, y, z, w."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,9 +16,7 @@ def pose_matrix(position: ArrayLike, quaternion: ArrayLike = (0.0, 0.0, 0.0, 1.0
     origin = np.asarray(position, dtype=np.float64)
     rotation = np.asarray(quaternion, dtype=np.float64)
     if origin.shape != (3,) or rotation.shape != (4,) or not np.isfinite([*origin, *rotation]).all():
-        raise InvalidInputError(
-            f"pose: position {position}, quaternion {quaternion}; need 3 and 4 finite numbers"
-        )
+        raise InvalidInputError(f"pose: position {position!r}, quaternion {quaternion!r}; need 3 and 4 finite numbers")
     length = float(np.linalg.norm(rotation))
     if not (abs(length - 1.0) <= 1e-3):
         raise InvalidInputError(f"pose: quaternion {rotation.tolist()} has length {length:.4f}, need 1")
