@@ -15,7 +15,7 @@ setup(
     zip_safe=False,
     maintainer="Singulation maintainers",
     maintainer_email="maintainers@users.noreply.github.com",
-    description="Node mechanics that every node of the suite shares: guarded callbacks, parameters, lifecycle, diagnostics.",
+    description="Node mechanics that every node of the suite shares.",
     license="Apache-2.0",
     entry_points={"console_scripts": []},
 )

@@ -7,8 +7,9 @@ from singulation_core.errors import InvalidInputError
 
 FloatArray = NDArray[np.float64]
 
-# Sine of the largest inward bend at a vertex that still counts as rounding of a straight edge.
-_CONVEXITY_SLACK = 1e-6
+# A vertex may lie this share of the outline's size inside the line through its neighbours: an outline that came as
+# float32 (geometry_msgs/Polygon) has straight edges bent by rounding.
+_CONVEXITY_SLACK = 1e-5
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -57,7 +58,7 @@ def validated_outline(outline: ArrayLike, name: str = "outline") -> FloatArray:
         raise InvalidInputError(f"{name}: area {area:.3g} m^2, the vertices lie on one line")
     if area < 0.0:
         raise InvalidInputError(f"{name}: clockwise, need counter-clockwise")
-    _require_convex(edges / lengths[:, None], name)
+    _require_convex(edges, size, name)
     points.setflags(write=False)
     return points
 
@@ -66,17 +67,18 @@ def _first_bad(points: FloatArray) -> int:
     return int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
 
 
-def _require_convex(directions: FloatArray, name: str) -> None:
+def _require_convex(edges: FloatArray, size: float, name: str) -> None:
     """Every turn to the left and one full turn in all, else it crosses itself."""
-    following = np.roll(directions, -1, axis=0)
-    sines = cross(directions, following)
-    cosines = (directions * following).sum(axis=1)
-    if not (sines.min() >= -_CONVEXITY_SLACK):
-        vertex = (int(sines.argmin()) + 1) % len(directions)
-        raise InvalidInputError(f"{name}: not convex at vertex {vertex}")
-    turns = float(np.arctan2(sines, cosines).sum()) / (2.0 * np.pi)
-    if not (abs(turns - 1.0) < 1e-3):
-        raise InvalidInputError(f"{name}: crosses itself ({turns:.1f} turns, need 1)")
+    following = np.roll(edges, -1, axis=0)
+    turns = cross(edges, following)
+    chords = edges + following
+    inward = -turns / np.maximum(np.hypot(chords[:, 0], chords[:, 1]), 1e-12 * size)
+    if not (inward.max() <= _CONVEXITY_SLACK * size):
+        vertex = (int(inward.argmax()) + 1) % len(edges)
+        raise InvalidInputError(f"{name}: not convex at vertex {vertex} ({inward.max():.3g} m inside)")
+    full_turns = float(np.arctan2(turns, (edges * following).sum(axis=1)).sum()) / (2.0 * np.pi)
+    if not (abs(full_turns - 1.0) < 1e-3):
+        raise InvalidInputError(f"{name}: crosses itself ({full_turns:.1f} turns, need 1)")
 
 
 def convex_hull(points: ArrayLike) -> FloatArray:

@@ -1,0 +1,84 @@
+"""The main function of every node: start, spin, end cleanly on SIGINT and SIGTERM."""
+
+import signal
+import sys
+import threading
+from collections.abc import Sequence
+from types import FrameType
+from typing import Any, Protocol
+
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+
+from singulation_core import SingulationError
+from singulation_node.guard import report_failure
+from singulation_node.managed_node import ManagedNode
+
+_WAKE = 0.2  # s; a signal is noticed within this time even while nothing happens
+
+
+class NodeFactory(Protocol):
+    """What makes the node, once ROS is initialised: usually its class."""
+
+    def __call__(self) -> Any: ...
+
+
+def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: int = 4) -> int:
+    """Run one node until SIGINT or SIGTERM.
+
+    ``--autostart`` on the command line (or the parameter ``autostart``) makes a lifecycle node configure and activate
+    itself; otherwise it waits for its manager.
+
+    Returns:
+        Exit code: 0 after a signal, 1 if the node could not be made or started.
+    """
+    arguments = list(sys.argv if args is None else args)
+    autostart = "--autostart" in arguments
+    stop = threading.Event()
+    rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        executor = MultiThreadedExecutor(num_threads=threads)
+        _stop_on_signals(stop, executor)
+        node = factory()
+        try:
+            executor.add_node(node)
+            if isinstance(node, ManagedNode) and (autostart or node.autostart) and not node.start():
+                return 1
+            _spin(executor, node, stop)
+            if isinstance(node, ManagedNode) and node.is_active:
+                node.trigger_shutdown()
+        finally:
+            executor.remove_node(node)
+            node.destroy_node()
+            executor.shutdown(timeout_sec=2.0)
+    except SingulationError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+def plain_arguments(args: Sequence[str] | None = None) -> list[str]:
+    """Command-line arguments without the program name, ROS arguments and ``--autostart``."""
+    arguments = remove_ros_args(list(sys.argv if args is None else args))
+    return [item for item in arguments[1:] if item != "--autostart"]
+
+
+def _stop_on_signals(stop: threading.Event, executor: Any) -> None:
+    def handle(number: int, frame: FrameType | None) -> None:
+        stop.set()
+        executor.wake()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, handle)
+
+
+def _spin(executor: Any, node: Any, stop: threading.Event) -> None:
+    while not stop.is_set():
+        try:
+            executor.spin_once(timeout_sec=_WAKE)
+        except Exception as error:  # from a callback that is not ours, such as one inside rclpy
+            report_failure(node, "executor", error)
