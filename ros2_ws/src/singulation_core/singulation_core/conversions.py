@@ -149,7 +149,7 @@ def cloud_to_msg(points: NDArray[np.float32], header: Any) -> Any:
     """Organized sensor_msgs/PointCloud2 with fields x, y, z of (H, W, 3) float32 points [m]; one copy of the data."""
     height, width, _ = points.shape
     data = array.array("B")
-    data.frombytes(np.ascontiguousarray(points, dtype="<f4").data)
+    data.frombytes(np.ascontiguousarray(points, dtype="<f4").reshape(-1).view(np.uint8).data)
     fields = [
         PointField(name=name, offset=4 * index, datatype=PointField.FLOAT32, count=1)
         for index, name in enumerate("xyz")
