@@ -17,6 +17,7 @@ from singulation_node.guard import report_failure
 from singulation_node.managed_node import ManagedNode
 
 _WAKE = 0.2  # s; a signal is noticed within this time even while nothing happens
+_SHUTDOWN = 15.0  # s that a node may take to stop what it is doing
 
 
 class NodeFactory(Protocol):
@@ -48,7 +49,7 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
                 return 1
             _spin(executor, node, stop)
             if isinstance(node, ManagedNode) and node.is_active:
-                node.trigger_shutdown()
+                _shut_down_while_spinning(executor, node)
         finally:
             executor.remove_node(node)
             node.destroy_node()
@@ -82,3 +83,12 @@ def _spin(executor: Any, node: Any, stop: threading.Event) -> None:
             executor.spin_once(timeout_sec=_WAKE)
         except Exception as error:  # from a callback that is not ours, such as one inside rclpy
             report_failure(node, "executor", error)
+
+
+def _shut_down_while_spinning(executor: Any, node: Any) -> None:
+    """A node that stops a robot still needs its callbacks while it does so."""
+    stopping = threading.Thread(target=node.trigger_shutdown, daemon=True)
+    stopping.start()
+    finished = threading.Event()
+    threading.Thread(target=lambda: (stopping.join(_SHUTDOWN), finished.set(), executor.wake()), daemon=True).start()
+    _spin(executor, node, finished)

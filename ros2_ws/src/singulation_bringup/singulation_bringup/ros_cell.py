@@ -1,0 +1,199 @@
+"""The cell of ``singulation_loop`` over ROS: looks through ``objects``, plans by service, pushes by action."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.time import Time
+from singulation_msgs.action import ExecutePush
+from singulation_msgs.msg import Arrangement as ArrangementMsg
+from singulation_msgs.srv import PlanPush
+from std_srvs.srv import Trigger
+
+from singulation_core import Arrangement, ContactMode, Push, ResultCode, SingulationError, conversions
+from singulation_node.guard import guarded
+from singulation_node.qos import STATE
+
+
+@dataclass(frozen=True, slots=True)
+class CellTimeouts:
+    """How long each step may take [s]; none waits for ever.
+
+    Args:
+        ready: until planner, executor and camera trigger are there.
+        view: from the trigger to the arrangement.
+        plan: for one answer of the planner.
+        execute: for one push, from goal to result.
+        stop: from a cancel request to standstill.
+    """
+
+    ready: float = 10.0
+    view: float = 10.0
+    plan: float = 30.0
+    execute: float = 120.0
+    stop: float = 10.0
+
+
+class RosCell:
+    """Camera, planner and robot behind topics, services and actions; use it from one thread that is not a callback's
+    of a mutually exclusive group.
+
+    Args:
+        node: spins elsewhere.
+        timeouts: of each step.
+        trigger: name of the camera's trigger service, "" if the camera runs freely.
+        view_delay: a cloud counts as fresh if stamped at least this long after the last motion ended [s].
+    """
+
+    def __init__(self, node: Any, timeouts: CellTimeouts, trigger: str, view_delay: float) -> None:
+        self._node, self._timeouts, self._view_delay = node, timeouts, view_delay
+        group = ReentrantCallbackGroup()
+        self._arrived = threading.Condition()
+        self._latest: Any | None = None
+        self._headers: dict[int, Any] = {}
+        self._fresh_from = node.get_clock().now()
+        self._cancel_requested: Callable[[], bool] = lambda: False
+        node.create_subscription(ArrangementMsg, "objects", self._on_objects, STATE, callback_group=group)
+        self._planner = node.create_client(PlanPush, "plan_push", callback_group=group)
+        self._camera = node.create_client(Trigger, trigger, callback_group=group) if trigger else None
+        self._executor = ActionClient(node, ExecutePush, "execute_push", callback_group=group)
+
+    def destroy(self) -> None:
+        """Give the action client back; the rest is the node's."""
+        self._executor.destroy()
+
+    def begin(self, cancel_requested: Callable[[], bool]) -> None:
+        """A new goal: the client's wish to cancel is asked through this function.
+
+        Raises:
+            SingulationError: ``NOT_READY``, naming what is missing.
+        """
+        self._cancel_requested = cancel_requested
+        self._fresh_from = self._node.get_clock().now()
+        waiting = [
+            ("service plan_push", self._planner.wait_for_service),
+            ("action execute_push", self._executor.wait_for_server),
+        ]
+        if self._camera is not None:
+            waiting.append(("camera trigger " + self._camera.srv_name, self._camera.wait_for_service))
+        for name, wait in waiting:
+            if not wait(timeout_sec=self._timeouts.ready):
+                raise SingulationError(ResultCode.NOT_READY, f"{name} did not appear within {self._timeouts.ready} s")
+
+    def check_cancelled(self) -> None:
+        """Raise ``CANCELLED`` if the client asked for it."""
+        if self._cancel_requested():
+            raise SingulationError(ResultCode.CANCELLED, "cancelled by the client")
+
+    def look(self) -> Arrangement:
+        """A view stamped after the last motion.
+
+        Raises:
+            SingulationError: ``NO_FRESH_VIEW`` or ``CANCELLED``.
+        """
+        if self._camera is not None:
+            answer = self._await(self._camera.call_async(Trigger.Request()), self._timeouts.view, "the camera trigger")
+            if not answer.success:
+                raise SingulationError(ResultCode.NO_FRESH_VIEW, f"the camera did not trigger: {answer.message}")
+        message = self._wait_for_fresh_view()
+        seen = conversions.arrangement_from_msg(message)
+        self._headers = {id(seen): message}
+        return seen
+
+    def plan(self, seen: Arrangement, policy: str, mode: ContactMode) -> Push:
+        """The planner's answer.
+
+        Raises:
+            SingulationError: with the planner's code.
+        """
+        request = PlanPush.Request(
+            arrangement=self._headers[id(seen)], policy=policy, contact_mode=conversions.contact_mode_to_msg(mode)
+        )
+        answer = self._await(self._planner.call_async(request), self._timeouts.plan, "plan_push")
+        _require_ok(answer)
+        return conversions.push_from_msg(answer.push)
+
+    def execute(self, push: Push) -> None:
+        """Push, wait for the end, and call only later clouds fresh.
+
+        Raises:
+            SingulationError: with the executor's code; ``CANCELLED`` once everything stands still.
+        """
+        message = next(iter(self._headers.values()))
+        goal = ExecutePush.Goal(push=conversions.push_to_msg(push, message.header))
+        try:
+            handle = self._await(self._executor.send_goal_async(goal), self._timeouts.plan, "execute_push")
+            if not handle.accepted:
+                raise SingulationError(ResultCode.REJECTED, "the executor rejected the goal; its log says why")
+            future = handle.get_result_async()
+            self._await(future, self._timeouts.execute, "the push", lambda: self._cancel(handle, future))
+            _require_ok(future.result().result)
+            if future.result().status != GoalStatus.STATUS_SUCCEEDED:
+                raise SingulationError(ResultCode.INTERNAL, f"execute_push ended in status {future.result().status}")
+        finally:
+            self._fresh_from = self._node.get_clock().now()
+
+    @guarded
+    def _on_objects(self, message: Any) -> None:
+        with self._arrived:
+            self._latest = message
+            self._arrived.notify_all()
+
+    def get_logger(self) -> Any:
+        """Logger of the node, for ``guarded``."""
+        return self._node.get_logger()
+
+    def _wait_for_fresh_view(self) -> Any:
+        deadline = time.monotonic() + self._timeouts.view
+        with self._arrived:
+            while not self._has_fresh_view():
+                self.check_cancelled()
+                if time.monotonic() > deadline:
+                    raise SingulationError(ResultCode.NO_FRESH_VIEW, self._no_view())
+                self._arrived.wait(_CANCEL_CHECK)
+            return self._latest
+
+    def _no_view(self) -> str:
+        last = "none" if self._latest is None else f"{conversions.seconds_of(self._latest.header.stamp):.3f} s"
+        wanted = 1e-9 * self._fresh_from.nanoseconds + self._view_delay
+        return f"no arrangement stamped after {wanted:.3f} s came within {self._timeouts.view} s; the last one: {last}"
+
+    def _has_fresh_view(self) -> bool:
+        if self._latest is None:
+            return False
+        stamp = Time.from_msg(self._latest.header.stamp, clock_type=self._fresh_from.clock_type)
+        return bool((stamp - self._fresh_from).nanoseconds >= 1e9 * self._view_delay)
+
+    def _cancel(self, handle: Any, future: Any) -> None:
+        """Ask the executor to stop and wait until it has."""
+        handle.cancel_goal_async()
+        stopped = threading.Event()
+        future.add_done_callback(lambda _: stopped.set())
+        if not stopped.wait(self._timeouts.stop):
+            raise SingulationError(ResultCode.TIMEOUT, f"the executor did not stop within {self._timeouts.stop} s")
+        raise SingulationError(ResultCode.CANCELLED, "cancelled by the client during a push")
+
+    def _await(self, future: Any, timeout: float, what: str, on_cancel: Callable[[], None] | None = None) -> Any:
+        """Result of a future; the node spins in other threads."""
+        on_cancel = on_cancel or self.check_cancelled
+        done = threading.Event()
+        future.add_done_callback(lambda _: done.set())
+        for _ in range(max(1, round(timeout / _CANCEL_CHECK))):
+            if done.wait(_CANCEL_CHECK):
+                return future.result()
+            if self._cancel_requested():
+                on_cancel()
+        raise SingulationError(ResultCode.TIMEOUT, f"{what} did not answer within {timeout} s")
+
+
+_CANCEL_CHECK = 0.05  # s
+
+
+def _require_ok(answer: Any) -> None:
+    if answer.code != ResultCode.OK:
+        raise SingulationError(ResultCode(answer.code), answer.message)

@@ -1,0 +1,225 @@
+"""Look, plan, push, look again, until the blocks are separated. No ROS: the cell is handed in."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from singulation_bringup.tracking import Tracked, Tracker
+from singulation_core import (
+    Arrangement,
+    ContactMode,
+    Push,
+    ResultCode,
+    SingulationError,
+    singulation_distance,
+    smallest_gap,
+)
+
+
+class Cell(Protocol):
+    """What the loop needs of camera, planner and robot. Each method raises SingulationError with its code."""
+
+    def look(self) -> Arrangement:
+        """A view taken after everything asked before has come to rest."""
+
+    def plan(self, seen: Arrangement, policy: str, mode: ContactMode) -> Push:
+        """The push that the policy proposes."""
+
+    def execute(self, push: Push) -> None:
+        """Perform the push."""
+
+    def check_cancelled(self) -> None:
+        """Raise ``CANCELLED`` if the client does not want it any more."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingulationGoal:
+    """What is asked.
+
+    Args:
+        max_pushes: at most this many pushes.
+        min_gap: smallest gap between any two outlines to call them separated [m].
+        policy: name of the policy, "" for the planner's own choice.
+        contact_mode: how to touch.
+        fallback_policies: asked in this order when a planned push cannot be performed.
+    """
+
+    max_pushes: int
+    min_gap: float
+    policy: str = ""
+    contact_mode: ContactMode = ContactMode.SINGLE_POINT
+    fallback_policies: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One push that was tried: exactly one code, the arrangements before and after."""
+
+    push: Push
+    code: ResultCode
+    message: str
+    before: Arrangement
+    after: Arrangement
+    distance_before: float
+    distance_after: float
+
+
+@dataclass(slots=True)
+class Progress:
+    """How far it is: outcomes so far, s(A) and smallest gap before the first push and after each one."""
+
+    outcomes: list[Outcome] = field(default_factory=list)
+    distances: list[float] = field(default_factory=list)
+    gaps: list[float] = field(default_factory=list)
+    lost: set[int] = field(default_factory=set)
+
+
+@dataclass(frozen=True, slots=True)
+class SingulationResult:
+    """How it ended."""
+
+    code: ResultCode
+    message: str
+    progress: Progress
+
+
+# What the planner or the executor refuses because of this very push; another push may do.
+_TRY_ANOTHER = {
+    ResultCode.NO_PUSH,
+    ResultCode.UNREACHABLE,
+    ResultCode.PATH_BLOCKED,
+    ResultCode.PUSH_OUTSIDE_WORKSPACE,
+    ResultCode.CONTACT_WIDTH,
+    ResultCode.START_TOO_FAR,
+}
+# The push was begun and stopped; the table may have changed, so a new look decides.
+_LOOK_AGAIN = {
+    ResultCode.COLLISION_STOP,
+    ResultCode.NO_PROGRESS,
+    ResultCode.PATH_TOLERANCE,
+    ResultCode.GOAL_TOLERANCE,
+    ResultCode.STALE_INPUT,
+}
+_MAX_FAILURES_IN_A_ROW = 2
+
+ProgressCallback = Callable[[Progress], None]
+
+
+class SingulationLoop:
+    """One run of the closed loop.
+
+    Args:
+        cell: camera, planner and robot.
+        goal: what is asked.
+        report: called after every look.
+    """
+
+    def __init__(self, cell: Cell, goal: SingulationGoal, report: ProgressCallback = lambda _: None) -> None:
+        self._cell = cell
+        self._goal = goal
+        self._report = report
+        self._tracker = Tracker()
+        self._unit: float | None = None
+        self._progress = Progress()
+
+    def run(self) -> SingulationResult:
+        """Until separated, out of pushes, nothing helps, cancelled, or a fault that is not got over. Never raises
+        ``SingulationError``: its code becomes the result's."""
+        try:
+            code, message = self._push_until_separated()
+        except SingulationError as error:
+            code, message = error.code, error.message
+        if self._progress.lost:
+            message += f"; blocks {sorted(self._progress.lost)} are no longer seen"
+        return SingulationResult(code, message, self._progress)
+
+    def _push_until_separated(self) -> tuple[ResultCode, str]:
+        seen, tracked = self._look()
+        failures = 0
+        while True:
+            gap, pushes = self._progress.gaps[-1], len(self._progress.outcomes)
+            if gap >= self._goal.min_gap:
+                return ResultCode.OK, _separated(len(seen), gap, pushes)
+            if pushes >= self._goal.max_pushes:
+                return ResultCode.MAX_PUSHES_REACHED, (
+                    f"smallest gap {1e3 * gap:.1f} mm after {pushes} pushes, need {1e3 * self._goal.min_gap:.1f} mm"
+                )
+            push, failure = self._push(seen)
+            if failure is not None and failure.code not in _LOOK_AGAIN:
+                self._record(push, failure, tracked, tracked)
+                raise failure
+            before, (seen, tracked) = tracked, self._look()
+            self._record(push, failure, before, tracked)
+            failures = 0 if failure is None else failures + 1
+            if failures >= _MAX_FAILURES_IN_A_ROW:
+                raise SingulationError(
+                    ResultCode.PUSH_FAILED, f"{failures} pushes in a row failed, the last: {failure}"
+                )
+
+    def _look(self) -> tuple[Arrangement, Tracked]:
+        self._cell.check_cancelled()
+        seen = self._cell.look()
+        if self._unit is None and len(seen) > 0:
+            self._unit = float(seen.bounding_radii.mean())
+        tracked = self._tracker.update(seen)
+        self._progress.lost = (self._progress.lost | set(tracked.lost)) - set(tracked.lasting_ids.values())
+        self._progress.distances.append(singulation_distance(seen, self._unit))
+        self._progress.gaps.append(smallest_gap(seen))
+        self._report(self._progress)
+        return seen, tracked
+
+    def _push(self, seen: Arrangement) -> tuple[Push, SingulationError | None]:
+        """Perform the first proposed push that is not refused; with it what stopped it, if anything did.
+
+        Raises:
+            SingulationError: ``NO_HELPFUL_PUSH`` with every refusal, or why the planner cannot answer at all.
+        """
+        refusals = []
+        for policy in dict.fromkeys((self._goal.policy, *self._goal.fallback_policies)):
+            self._cell.check_cancelled()
+            try:
+                push = self._cell.plan(seen, policy, self._goal.contact_mode)
+            except SingulationError as error:
+                if error.code not in _TRY_ANOTHER:
+                    raise
+                refusals.append(f"{policy or 'default policy'}: {error}")
+                continue
+            try:
+                self._cell.execute(push)
+            except SingulationError as error:
+                if error.code not in _TRY_ANOTHER:
+                    return push, error
+                refusals.append(f"{policy or 'default policy'}: {error}")
+                continue
+            return push, None
+        raise SingulationError(ResultCode.NO_HELPFUL_PUSH, "; ".join(refusals))
+
+    def _record(self, push: Push, failure: SingulationError | None, before: Tracked, after: Tracked) -> None:
+        moved = after is not before
+        distances = self._progress.distances
+        outcome = Outcome(
+            _with_lasting_target(push, before),
+            ResultCode.OK if failure is None else failure.code,
+            "" if failure is None else failure.message,
+            before.arrangement,
+            after.arrangement,
+            distances[-2] if moved else distances[-1],
+            distances[-1],
+        )
+        self._progress.outcomes.append(outcome)
+        self._report(self._progress)
+
+
+def _with_lasting_target(push: Push, tracked: Tracked) -> Push:
+    target = None if push.target_id is None else tracked.lasting_ids.get(push.target_id)
+    return Push(push.start, push.end, push.contact_mode, push.contact_width, target, push.policy, push.expected_gain)
+
+
+def _separated(count: int, gap: float, pushes: int) -> str:
+    if count == 0:
+        return "nothing to do: no objects on the table"
+    if count == 1:
+        return "nothing to do: one object"
+    gap_text = "apart" if math.isinf(gap) else f"smallest gap {1e3 * gap:.1f} mm"
+    return f"{count} objects separated, {gap_text}, after {pushes} pushes"
