@@ -87,8 +87,18 @@ def _spin(executor: Any, node: Any, stop: threading.Event) -> None:
 
 def _shut_down_while_spinning(executor: Any, node: Any) -> None:
     """A node that stops a robot still needs its callbacks while it does so."""
-    stopping = threading.Thread(target=node.trigger_shutdown, daemon=True)
-    stopping.start()
     finished = threading.Event()
-    threading.Thread(target=lambda: (stopping.join(_SHUTDOWN), finished.set(), executor.wake()), daemon=True).start()
+
+    def shut_down() -> None:
+        try:
+            node.trigger_shutdown()
+        finally:
+            finished.set()
+            executor.wake()
+
+    threading.Thread(target=shut_down, daemon=True).start()
+    limit = threading.Timer(_SHUTDOWN, finished.set)
+    limit.daemon = True
+    limit.start()
     _spin(executor, node, finished)
+    limit.cancel()
