@@ -196,15 +196,17 @@ class SingulationLoop:
         raise SingulationError(ResultCode.NO_HELPFUL_PUSH, "; ".join(refusals))
 
     def _record(self, push: Push, failure: SingulationError | None, before: Tracked, after: Tracked) -> None:
-        moved = after is not before
-        distances = self._progress.distances
+        distances, gaps = self._progress.distances, self._progress.gaps
+        if after is before:  # no look followed; there is still one value for every push
+            distances.append(distances[-1])
+            gaps.append(gaps[-1])
         outcome = Outcome(
             _with_lasting_target(push, before),
             ResultCode.OK if failure is None else failure.code,
             "" if failure is None else failure.message,
             before.arrangement,
             after.arrangement,
-            distances[-2] if moved else distances[-1],
+            distances[-2],
             distances[-1],
         )
         self._progress.outcomes.append(outcome)

@@ -48,7 +48,7 @@ def run(cell, **options):
     goal = SingulationGoal(**{"max_pushes": 10, "min_gap": 0.03, "fallback_policies": ("second",), **options})
     reports = []
     result = SingulationLoop(cell, goal, lambda progress: reports.append(len(progress.outcomes))).run()
-    assert len(result.progress.distances) == len(result.progress.gaps)
+    assert len(result.progress.distances) == len(result.progress.gaps) == len(result.progress.outcomes) + 1
     return result, reports
 
 
