@@ -1,0 +1,65 @@
+"""Euclidean clustering: the partition of PCL's EuclideanClusterExtraction, found on a grid.
+
+Points closer than the tolerance are linked; a cluster is what links connect. Cells of edge tolerance / sqrt(3) hold
+only points that are linked with one another, so cells, not points, are united, and two cells are compared only as long
+as they are not yet connected. Distances are float32 sums, exclusive of the tolerance, as in PCL's search tree, so that
+ties fall alike.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from singulation_core import InvalidInputError
+
+from singulation_perception.grid_columns import columns_of, link_cells
+
+IntArray = NDArray[np.int32]
+
+_ALL = 2_147_483_647
+
+
+def euclidean_clusters(points: ArrayLike, tolerance: float, min_size: int = 1, max_size: int = _ALL) -> IntArray:
+    """Labels of the clusters of an unordered cloud.
+
+    Args:
+        points: (N, 3) [m]; rows that are not finite belong to no cluster.
+        tolerance: largest distance of linked points, exclusive [m].
+        min_size: smaller clusters are labelled -1.
+        max_size: larger clusters are labelled -1.
+
+    Returns:
+        (N,) int32: 0, 1, ... in the order of decreasing size (equal sizes: of the first point), -1 for none.
+
+    Raises:
+        InvalidInputError: wrong shape, or a tolerance or size that makes no sense.
+    """
+    cloud = np.ascontiguousarray(points, dtype=np.float32)
+    if cloud.ndim != 2 or cloud.shape[1] != 3:
+        raise InvalidInputError(f"points: shape {cloud.shape}, need (N, 3)")
+    if not (0.0 < tolerance < float("inf")):
+        raise InvalidInputError(f"tolerance: {tolerance} m, need a finite positive length")
+    if not (1 <= min_size <= max_size):
+        raise InvalidInputError(f"min_size, max_size: {min_size}, {max_size}; need 1 <= min <= max")
+    finite = np.isfinite(cloud).all(axis=1)
+    if finite.all():
+        return _ranked(_components(cloud, tolerance), min_size, max_size)
+    labels = np.full(len(cloud), -1, dtype=np.int32)
+    labels[finite] = _ranked(_components(cloud[finite], tolerance), min_size, max_size)
+    return labels
+
+
+def _components(cloud: NDArray[np.float32], tolerance: float) -> IntArray:
+    """Component number of every point."""
+    if not len(cloud):
+        return np.empty(0, dtype=np.int32)
+    columns = columns_of(cloud, tolerance)
+    return np.asarray(link_cells(*columns, np.float32(tolerance * tolerance)))
+
+
+def _ranked(components: IntArray, min_size: int, max_size: int) -> IntArray:
+    """Components renumbered by decreasing size; those of a wrong size become -1."""
+    sizes = np.bincount(components)
+    order = np.argsort(-sizes, kind="stable")
+    order = order[(sizes[order] >= min_size) & (sizes[order] <= max_size)]
+    numbers = np.full(len(sizes), -1, dtype=np.int32)
+    numbers[order] = np.arange(len(order), dtype=np.int32)
+    return np.asarray(numbers[components])
