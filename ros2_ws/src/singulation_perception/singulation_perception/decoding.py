@@ -14,13 +14,10 @@ from singulation_perception.clouds import CloudData, CloudField, CloudLayout, Sc
 
 Float32Array = NDArray[np.float32]
 
-MAX_POINTS = 8_000_000  # 2.5 times the largest PhoXi image (2064 x 1544)
-_FARTHEST_METRES = 15.0  # the longest PhoXi sees 4 m; the shortest begins at 150 mm
-_SAMPLES = 4096
 _FLOATS = {ScalarType.FLOAT32: "f4", ScalarType.FLOAT64: "f8"}
 
 
-def decode_points(data: CloudData, layout: CloudLayout, max_points: int = MAX_POINTS) -> Float32Array:
+def decode_points(data: CloudData, layout: CloudLayout) -> Float32Array:
     """Coordinates of all points, missing ones included as they were sent.
 
     A view of ``data`` where x, y, z are neighbouring native float32 (every PhoXi driver); anything else is converted
@@ -30,11 +27,11 @@ def decode_points(data: CloudData, layout: CloudLayout, max_points: int = MAX_PO
         (H, W, 3) float32 for an organized cloud (height > 1), else (N, 3); any strides, maybe read-only.
 
     Raises:
-        SingulationError: ``NO_POINTS`` for an empty cloud, ``CLOUD_TOO_LARGE``, ``BAD_LAYOUT`` with the field or
-            the two numbers that contradict each other.
+        SingulationError: ``NO_POINTS`` for an empty cloud, ``BAD_LAYOUT`` with the field or the two numbers that
+            contradict each other.
     """
     size = memoryview(data).nbytes
-    _require_sizes(layout, size, max_points)
+    _require_sizes(layout, size)
     columns = [_float_field(layout, name) for name in "xyz"]
     points = _neighbouring_view(data, layout, columns)
     if points is None:
@@ -42,41 +39,12 @@ def decode_points(data: CloudData, layout: CloudLayout, max_points: int = MAX_PO
     return points if layout.height > 1 else points[0]
 
 
-def require_metres(points: Float32Array) -> None:
-    """Refuse a cloud whose coordinates can only be millimetres; looks at some thousand points.
-
-    Args:
-        points: (..., 3), metres if all is well.
-
-    Raises:
-        SingulationError: ``NOT_METRES`` with the distance seen and the advice.
-    """
-    rows = points.reshape(-1, 3) if points.ndim == 2 else points[:: max(1, points.shape[0] // 64)].reshape(-1, 3)
-    sample = rows[:: max(1, len(rows) // _SAMPLES)].astype(np.float64)
-    with np.errstate(over="ignore", invalid="ignore"):
-        distances = np.sqrt((sample**2).sum(axis=1))
-    distances = distances[np.isfinite(distances) & (distances > 0.0)]
-    if len(distances) == 0:
-        return  # nothing to judge: that there are no points is said where they are used
-    median = float(np.median(distances))
-    if not (median <= _FARTHEST_METRES):
-        raise SingulationError(
-            ResultCode.NOT_METRES,
-            f"half of the points are farther than {median:.0f} m from the camera: this looks like millimetres; "
-            "the cloud must be in metres (divide by 1000 at the source)",
-        )
-
-
-def _require_sizes(layout: CloudLayout, size: int, max_points: int) -> None:
+def _require_sizes(layout: CloudLayout, size: int) -> None:
     height, width = layout.height, layout.width
     if height == 0 and width == 0 and size == 0:
         raise SingulationError(ResultCode.NO_POINTS, "the cloud is empty: height 0, width 0, no data")
     if not (height > 0 and width > 0):
         raise _bad(f"height {height}, width {width} with {size} bytes of data; both must be positive")
-    if not (height * width <= max_points):
-        raise SingulationError(
-            ResultCode.CLOUD_TOO_LARGE, f"{width} x {height} = {width * height} points, at most {max_points} are taken"
-        )
     if not (layout.point_step > 0):
         raise _bad(f"point_step {layout.point_step}, need more than 0")
     if not (layout.row_step >= width * layout.point_step):

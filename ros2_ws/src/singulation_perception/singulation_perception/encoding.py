@@ -1,4 +1,4 @@
-"""The bytes of a cloud from arrays. ``array('B')`` is what the message takes without looking at every byte."""
+"""The bytes of a coloured cloud. ``array('B')`` is what the message takes without looking at every byte."""
 
 from array import array
 
@@ -12,19 +12,6 @@ XYZ = tuple(CloudField(name, 4 * place) for place, name in enumerate("xyz"))
 XYZ_RGB = (*XYZ, CloudField("rgb", 12))
 
 _UNLABELLED = 0x505860  # slate grey, so that the colours of the objects stand out
-
-
-def encode_points(points: ArrayLike) -> tuple[CloudLayout, "array[int]"]:
-    """Layout and bytes of packed float32 x, y, z.
-
-    Args:
-        points: (H, W, 3) or (N, 3) [m]; missing points as NaN.
-
-    Raises:
-        InvalidInputError: another shape.
-    """
-    packed = np.ascontiguousarray(points, dtype="<f4")
-    return _layout(packed.shape, XYZ), _bytes(packed)
 
 
 def encode_coloured(points: ArrayLike, labels: NDArray[np.integer]) -> tuple[CloudLayout, "array[int]"]:
