@@ -20,7 +20,7 @@ _PUSHER = "#202020"
 
 def colour_of(identity: int) -> tuple[float, float, float]:
     """Colour of a block, the same in every picture of a run."""
-    return tuple(_COLOURS[identity % len(_COLOURS)])  # type: ignore[return-value]
+    return tuple(_COLOURS[identity % len(_COLOURS)])
 
 
 def extent(arrangements: list[Arrangement], workspace: Workspace | None = None) -> Workspace:
@@ -118,30 +118,27 @@ def picture_of_push(
     figure.savefig(path, dpi=100)
 
 
-def picture_of_frame(path: Path, seen: Arrangement, push: Push | None, points: FloatArray | None, title: str) -> None:
-    """A recorded scene: points seen from above where there are any, segments, and the planned push.
+def picture_of_frame(path: Path, view: FloatArray | None, seen: Arrangement, push: Push | None, title: str) -> None:
+    """A recorded scene: what the camera saw with the segments in colour, and the plan on the table.
 
     Args:
         path: PNG to write.
+        view: (H, W, 3) colours 0..1, None if the cloud has no image order.
         seen: segments.
         push: the plan, None if there is none.
-        points: (m, 3) in the frame of ``seen`` [m], coloured by height.
         title: above the picture.
     """
-    shown = extent([seen])
-    figure = Figure(figsize=(8.0, 6.4), layout="constrained")
-    axes = figure.subplots()
-    draw_table(axes, shown, title)
-    if points is not None:
-        inside = (points[:, 0] > shown[0]) & (points[:, 0] < shown[1])
-        inside &= (points[:, 1] > shown[2]) & (points[:, 1] < shown[3])
-        near = points[inside]
-        near = near[:: max(1, len(near) // 60_000)]
-        height = axes.scatter(100 * near[:, 1], 100 * near[:, 0], c=100 * near[:, 2], s=0.4, cmap="Greys", vmin=-2)
-        figure.colorbar(height, ax=axes, label="height above the table [cm]", shrink=0.7)
-    draw_arrangement(axes, seen)
+    figure = Figure(figsize=(13.0, 5.6), layout="constrained")
+    panels = figure.subplots(1, 2 if view is not None else 1, squeeze=False)[0]
+    if view is not None:
+        panels[0].imshow(view)
+        panels[0].set_axis_off()
+        panels[0].set_title("camera view, segments in colour", fontsize=10)
+    draw_table(panels[-1], extent([seen]), "polygons and planned push on the table")
+    draw_arrangement(panels[-1], seen)
     if push is not None:
-        draw_push(axes, push)
+        draw_push(panels[-1], push)
+    figure.suptitle(title)
     figure.savefig(path, dpi=100)
 
 

@@ -1,7 +1,6 @@
 """What node tests need: a domain of their own, nodes that spin in the background, waiting for conditions."""
 
 import contextlib
-import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -12,24 +11,8 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import MultiThreadedExecutor
 
+from singulation_node.domain import reserved_domain
 from singulation_node.qos import STATE
-
-_FIRST_PORT = 32768  # one TCP port per domain: whoever holds it owns the domain
-_DOMAINS = range(1, 100)  # above 101 the ports of DDS collide with ephemeral ones
-
-
-@contextlib.contextmanager
-def reserved_domain() -> Iterator[int]:
-    """A ROS domain id that no other test on this machine uses as long as the block runs."""
-    for domain in _DOMAINS:
-        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as holder:
-            try:
-                holder.bind(("127.0.0.1", _FIRST_PORT + domain))
-            except OSError:
-                continue
-            yield domain
-            return
-    raise RuntimeError(f"all ROS domains {_DOMAINS} are in use")
 
 
 @pytest.fixture

@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from singulation_node.testing import reserved_domain, wait_until
+from singulation_node.domain import reserved_domain
+from singulation_node.testing import wait_until
 
 PROGRAM = """
 import sys

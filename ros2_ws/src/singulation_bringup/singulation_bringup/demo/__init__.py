@@ -1,0 +1,1 @@
+"""The main job in one command: recorded clouds, then the closed loop in the simulated cell."""
