@@ -1,0 +1,32 @@
+"""What a policy proposes: which object to push, in which direction, along which line."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.types import IntArray
+
+
+class Candidates(NamedTuple):
+    """Pushes in the order in which they shall be tried.
+
+    Attributes:
+        objects: (m,) index of the push object in the scene.
+        directions: (m, 2) unit vectors.
+        offsets: (m,) distance of the push line to the left of the centroid [m].
+        gains: (m,) expected (s' - s) / s, NaN where nothing was simulated; None if nowhere.
+    """
+
+    objects: IntArray
+    directions: FloatArray
+    offsets: FloatArray
+    gains: FloatArray | None = None
+
+
+def through_centroid(objects: IntArray | int, directions: FloatArray) -> Candidates:
+    """Candidates whose push lines pass through the centroids of their objects; one object may serve for all."""
+    count = len(directions)
+    if isinstance(objects, int):
+        objects = np.full(count, objects, dtype=np.int64)
+    return Candidates(objects, directions, np.zeros(count))

@@ -1,0 +1,102 @@
+"""``plan_push``: from an arrangement to the push that a policy would do."""
+
+import math
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from singulation_core import (
+    Arrangement,
+    ContactMode,
+    InvalidInputError,
+    Push,
+    PusherGeometry,
+    ResultCode,
+    SingulationError,
+)
+from singulation_core import contact_mode as as_contact_mode
+from singulation_core.push_world.physics import PushPhysics
+from singulation_planner.best_mode import best_of_modes
+from singulation_planner.placement import Placement, clearance_of, make_placer, workspace_walls
+from singulation_planner.policies import find_policy
+from singulation_planner.policy import Policy, Task
+from singulation_planner.scene import Scene
+
+# Travel after contact in mean bounding radii. The paper does not give it; its tables fit 0.7 to 1.
+PUSH_DISTANCE_FACTOR = 1.0
+_PUSHER, _PLACEMENT = PusherGeometry(), Placement()
+
+
+def plan_push(
+    arrangement: Arrangement,
+    policy: str = "cluster_push",
+    contact_mode: ContactMode | int | str = ContactMode.SINGLE_POINT,
+    push_distance: float | None = None,
+    pusher: PusherGeometry = _PUSHER,
+    workspace: ArrayLike | None = None,
+    seed: int = 0,
+    placement: Placement = _PLACEMENT,
+    push_distance_factor: float = PUSH_DISTANCE_FACTOR,
+    best_contact_mode: bool = False,
+    physics: PushPhysics | None = None,
+    **options: Any,
+) -> Push:
+    """The push that a policy plans for an arrangement.
+
+    The policy ranks candidates (push object, direction, line); the first one that the pusher can perform is taken:
+    the pusher is free at its start, start and end lie in the workspace, and no object is carried over its edge.
+
+    Args:
+        arrangement: at least two objects.
+        policy: one of ``POLICIES``.
+        contact_mode: how the jaws touch.
+        push_distance: travel from start to end [m]; None: the clearance at the start and
+            ``push_distance_factor`` mean bounding radii.
+        pusher: footprint of the jaws.
+        workspace: (k, 2) convex, counter-clockwise polygon in the frame of the arrangement [m]; None: unbounded.
+        seed: of what is random in a policy; the same input and seed give the same push.
+        placement: how starts are chosen and what counts as reachable.
+        push_distance_factor: see ``push_distance``.
+        best_contact_mode: plan for each of the three contact modes, simulate their pushes, return the best;
+            ``contact_mode`` is then only the first one tried, which wins ties.
+        physics: of policies and choices that simulate; None: ``PushPhysics.quasi_static()``.
+        **options: of the policy, see its module.
+
+    Returns:
+        The push; ``expected_gain`` is NaN unless the policy simulates.
+
+    Raises:
+        SingulationError: ``NOTHING_TO_DO``, ``NO_PUSH`` (with the number of candidates refused for each reason),
+            ``UNKNOWN_POLICY``, ``UNKNOWN_CONTACT_MODE``, ``OUTSIDE_WORKSPACE``, ``OVERLAPPING_OBJECTS`` or
+            ``INVALID_INPUT``.
+    """
+    chosen, mode = find_policy(policy), as_contact_mode(contact_mode)
+    settings = chosen.read_options(options)
+    scene = Scene.of(arrangement)
+    travel = _travel(push_distance, push_distance_factor * scene.scale, clearance_of(placement, pusher))
+    walls = workspace_walls(workspace, scene)
+
+    def plan(with_mode: ContactMode) -> Push:
+        placer = make_placer(scene, with_mode, travel, pusher, placement, walls)
+        return _first_push(chosen, Task(scene, placer, seed, physics), settings)
+
+    return best_of_modes(plan, mode, scene, pusher, physics) if best_contact_mode else plan(mode)
+
+
+def _travel(push_distance: float | None, after_contact: float, clearance: float) -> float:
+    travel = clearance + after_contact if push_distance is None else push_distance
+    if not (0.0 < travel < math.inf):
+        raise InvalidInputError(f"push distance {travel} m, need a finite positive length")
+    return float(travel)
+
+
+def _first_push(policy: Policy, task: Task, settings: Any) -> Push:
+    placer = task.placer
+    for candidates in policy.rank(task, settings):
+        found = placer.first_feasible(candidates)
+        if found is not None:
+            index, start = found
+            gain = math.nan if candidates.gains is None else float(candidates.gains[index])
+            target = int(candidates.objects[index])
+            return placer.push(target, start, candidates.directions[index], policy.name, gain)
+    raise SingulationError(ResultCode.NO_PUSH, f"{policy.name}: no push is possible: {placer.why_none()}")

@@ -1,0 +1,88 @@
+"""An arrangement as flat arrays in an order that does not depend on how its objects are numbered."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from singulation_core import Arrangement, ResultCode, SingulationError
+from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.overlap import deepest_overlap
+from singulation_planner.kernels.types import IntArray
+
+# Perception moves an outline by a few per cent of its size; deeper overlaps are errors, not noise.
+OVERLAP_TOLERANCE = 0.15  # in units of the smaller bounding radius
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Objects sorted by size, then by position: ties between scores are broken by this order.
+
+    Sizes do not change when the scene is turned or moved, so neither does the order unless two objects are congruent;
+    then the one with smaller x, or else smaller y, comes first.
+
+    Attributes:
+        arrangement: where it comes from.
+        order: (n,) positions in the arrangement.
+        centroids: (n, 2) [m].
+        radii: (n,) bounding radii [m].
+        vertices: (v, 2) outlines one after the other [m].
+        firsts: (n + 1,) where each outline begins in ``vertices``.
+        scale: mean bounding radius [m].
+    """
+
+    arrangement: Arrangement
+    order: tuple[int, ...]
+    centroids: FloatArray
+    radii: FloatArray
+    vertices: FloatArray
+    firsts: IntArray
+    scale: float
+
+    @classmethod
+    def of(cls, arrangement: Arrangement) -> Self:
+        """Scene of at least two objects that do not overlap.
+
+        Raises:
+            SingulationError: ``NOTHING_TO_DO`` for fewer than two objects, ``OVERLAPPING_OBJECTS``.
+        """
+        n = len(arrangement)
+        if n < 2:
+            raise SingulationError(
+                ResultCode.NOTHING_TO_DO, f"arrangement: {n} object(s), singulation needs at least two"
+            )
+        order = _canonical_order(arrangement)
+        outlines = [arrangement.objects[k].outline for k in order]
+        firsts = np.zeros(n + 1, dtype=np.int64)
+        np.cumsum([len(outline) for outline in outlines], out=firsts[1:])
+        index = np.array(order)
+        radii = arrangement.bounding_radii[index]
+        scale = float(radii.sum()) / n
+        scene = cls(arrangement, order, arrangement.centroids[index], radii, np.concatenate(outlines), firsts, scale)
+        scene._refuse_overlaps()
+        return scene
+
+    def __len__(self) -> int:
+        return len(self.order)
+
+    def object_id(self, index: int) -> int:
+        """Id of the object at this place of the canonical order."""
+        return self.arrangement.objects[self.order[index]].id
+
+    def _refuse_overlaps(self) -> None:
+        one, other, depth = deepest_overlap(self.centroids, self.radii, self.vertices, self.firsts, OVERLAP_TOLERANCE)
+        if one >= 0:
+            raise SingulationError(
+                ResultCode.OVERLAPPING_OBJECTS,
+                f"objects {self.object_id(one)} and {self.object_id(other)} overlap by {depth:.4g} m; at most "
+                f"{OVERLAP_TOLERANCE:.0%} of the smaller bounding radius is taken for noise",
+            )
+
+
+def _canonical_order(arrangement: Arrangement) -> tuple[int, ...]:
+    largest = max(item.bounding_radius for item in arrangement.objects)
+    keys = [
+        (round(item.bounding_radius / largest, 6), round(item.area / largest**2, 6), *item.centroid.tolist())
+        for item in arrangement.objects
+    ]
+    return tuple(sorted(range(len(keys)), key=keys.__getitem__))
