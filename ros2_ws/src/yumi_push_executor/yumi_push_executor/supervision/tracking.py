@@ -1,0 +1,148 @@
+"""Whether the arm follows the trajectory it was ordered to follow."""
+
+from collections import deque
+
+import numpy as np
+
+from singulation_core import ResultCode
+from singulation_core.polygon import FloatArray
+from yumi_push_executor.supervision.faults import Fault, Stop
+from yumi_push_executor.supervision.limits import SupervisionLimits
+from yumi_push_executor.supervision.trajectory import Trajectory
+
+_NOTICED = 0.003  # rad; a movement larger than this is no noise
+_GRID = 0.008  # s between the points of the command that a measured position is compared with
+_STILL = 0.1  # share of the commanded movement below which an arm counts as not moving
+
+
+class FollowingWatch:
+    """Compares measured positions with the command.
+
+    A controller starts a trajectory some time after it was sent and follows it some time behind. So a measured position
+    is compared with the piece of the command that lies between now and the longest allowed lag before: the error is its
+    distance to the nearest point of that piece. The latency of the start is learned when the arm is first seen to move.
+
+    Args:
+        arm: ``left`` or ``right``, for the texts.
+        trajectory: that was ordered.
+        sent: when, on the clock of the states [s].
+        limits: of the supervision.
+    """
+
+    def __init__(self, arm: str, trajectory: Trajectory, sent: float, limits: SupervisionLimits) -> None:
+        self.trajectory = trajectory
+        self.sent = sent
+        self._arm = arm
+        self._limits = limits
+        self._latency: float | None = None
+        self._seen: deque[tuple[float, FloatArray]] = deque()
+        self._visible = _first_movement(trajectory)
+
+    @property
+    def begun(self) -> bool:
+        """Whether the arm has been seen to move."""
+        return self._latency is not None
+
+    def elapsed(self, time: float) -> float:
+        """Time on the trajectory that the controller should have reached at ``time`` [s]."""
+        return time - self.sent - (self._latency or 0.0)
+
+    def check(self, taken: float, positions: FloatArray) -> Fault | None:
+        """Judge one measured position, (7,) rad."""
+        self._remember(taken, positions)
+        self._learn_latency(taken, positions)
+        if self._overdue(taken):
+            text = f"the {self._arm} arm has not begun to move {self._limits.start_latency} s after it was ordered to"
+            return Fault(ResultCode.NO_PROGRESS, text, lift=True)
+        frozen = self._frozen(taken)
+        if frozen is not None:
+            return frozen
+        error = self._error(taken, positions)
+        worst = int(error.argmax())
+        if error[worst] <= self._limits.path_tolerance:
+            return None
+        return self._explain(taken, f"joint {worst + 1} is {error[worst]:.3f} rad away from the path")
+
+    def finished(self, taken: float, positions: FloatArray, speed: FloatArray) -> bool:
+        """Whether the arm stands at the end of the trajectory."""
+        return (
+            self.elapsed(taken) >= self.trajectory.duration
+            and float(np.abs(positions - self.trajectory.end).max()) <= self._limits.goal_tolerance
+            and float(np.abs(speed).max()) <= self._limits.stopped_speed
+        )
+
+    def overtime(self, taken: float, positions: FloatArray) -> Fault | None:
+        """A fault once the end has not been reached in time."""
+        if not (self.elapsed(taken) > self.trajectory.duration + self._limits.goal_time):
+            return None
+        missing = np.abs(positions - self.trajectory.end)
+        worst = int(missing.argmax())
+        return Fault(
+            ResultCode.GOAL_TOLERANCE,
+            f"{self._arm} joint {worst + 1} stands {missing[worst]:.4f} rad before its end "
+            f"{self._limits.goal_time} s after it should be there, tolerance {self._limits.goal_tolerance} rad",
+            lift=True,
+        )
+
+    def _remember(self, taken: float, positions: FloatArray) -> None:
+        self._seen.append((taken, positions))
+        while len(self._seen) > 2 and self._seen[1][0] <= taken - self._limits.progress_window:
+            self._seen.popleft()
+
+    def _learn_latency(self, taken: float, positions: FloatArray) -> None:
+        if self._latency is None and self._visible is not None:
+            moved = float(np.abs(positions - self.trajectory.start).max())
+            if moved > _NOTICED:
+                self._latency = min(max(0.0, taken - self.sent - self._visible), self._limits.start_latency)
+
+    def _overdue(self, taken: float) -> bool:
+        if self._visible is None or self._latency is not None:
+            return False
+        return not (taken - self.sent - self._visible <= self._limits.start_latency)
+
+    def _error(self, taken: float, positions: FloatArray) -> FloatArray:
+        """(7,) distance to the nearest allowed point of the command, each joint [rad]."""
+        newest = self.elapsed(taken)
+        span = self._limits.lag + (self._limits.start_latency if self._latency is None else 0.0)
+        count = int(np.ceil(span / _GRID)) + 1
+        commands, _ = self.trajectory.sample(newest - np.linspace(0.0, span, count))
+        errors = np.abs(commands - positions)
+        return np.asarray(errors[errors.max(axis=1).argmin()])
+
+    def _frozen(self, taken: float) -> Fault | None:
+        """Encoders of a moving arm are never this still: the numbers are frozen, the arm may be moving."""
+        values = np.array([positions for _, positions in self._seen])
+        if not self.begun or len(values) < 3 or np.ptp(values, axis=0).any():
+            return None
+        span, commanded, _ = self._window(taken)
+        if not (span >= self._limits.progress_window and commanded > _NOTICED):
+            return None
+        return Fault(
+            ResultCode.NO_PROGRESS,
+            f"the joint states of the {self._arm} arm are frozen: not one bit changed for {span:.2f} s while it was "
+            f"ordered to move {commanded:.4f} rad",
+            Stop.ALONG_PATH,
+        )
+
+    def _explain(self, taken: float, text: str) -> Fault:
+        span, commanded, moved = self._window(taken)
+        if moved < _STILL * commanded:
+            ordered = f"moved {moved:.4f} rad in {span:.2f} s while it was ordered to move {commanded:.4f} rad"
+            return Fault(ResultCode.NO_PROGRESS, f"the {self._arm} arm {ordered}; {text}", lift=True)
+        limit = self._limits.path_tolerance
+        return Fault(ResultCode.PATH_TOLERANCE, f"{self._arm} arm: {text}, limit {limit} rad", lift=True)
+
+    def _window(self, taken: float) -> tuple[float, float, float]:
+        """Length of the remembered time [s], and how far the command and the arm went in it [rad]."""
+        then, before = self._seen[0]
+        ordered, _ = self.trajectory.sample((self.elapsed(then), self.elapsed(taken)))
+        moved = float(np.abs(self._seen[-1][1] - before).max())
+        return taken - then, float(np.abs(ordered[1] - ordered[0]).max()), moved
+
+
+def _first_movement(trajectory: Trajectory) -> float | None:
+    """When the command has left its start by more than noise [s], None if it never does."""
+    times = np.arange(0.0, trajectory.duration + _GRID, _GRID)
+    positions, _ = trajectory.sample(times)
+    far = np.flatnonzero(np.abs(positions - trajectory.start).max(axis=1) > _NOTICED)
+    return float(times[far[0]]) if len(far) else None
