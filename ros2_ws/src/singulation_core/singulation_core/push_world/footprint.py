@@ -60,9 +60,10 @@ class Footprint:
 
 
 def pusher_footprint(push: Push, pusher: PusherGeometry) -> Footprint:
-    """The jaws of a push; its origin is the tool centre, which moves from ``push.start`` to ``push.end``.
+    """The jaws of a push; the origin of the footprint moves from ``push.start`` to ``push.end``.
 
-    Single point: a disc. Edge: a rectangle ``contact_width`` wide. Two points: two discs ``contact_width`` apart.
+    Single point: a disc around the origin. Edge: a rectangle ``contact_width`` wide, the middle of its front edge at the
+    origin. Two points: two discs, their centres ``contact_width`` apart, the origin in the middle.
     """
     return _jaws(push.contact_mode, push.contact_width, pusher)
 
@@ -74,5 +75,5 @@ def _jaws(mode: ContactMode, width: float, pusher: PusherGeometry) -> Footprint:
         return Footprint(discs=(Disc(0.0, 0.0, pusher.tip_radius),))
     if mode is ContactMode.TWO_POINT:
         return Footprint(discs=(Disc(0.0, -half, pusher.tip_radius), Disc(0.0, half, pusher.tip_radius)))
-    depth = 0.5 * pusher.edge_thickness
-    return Footprint(polygons=(np.array(((-depth, -half), (depth, -half), (depth, half), (-depth, half))),))
+    back = -pusher.edge_thickness
+    return Footprint(polygons=(np.array(((back, -half), (0.0, -half), (0.0, half), (back, half))),))

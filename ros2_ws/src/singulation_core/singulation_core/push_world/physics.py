@@ -26,6 +26,7 @@ class PushPhysics:
         iterations: of the contact solver in each step.
         velocity_kept: share of a block's velocity that survives a step.
         seconds_per_step: only matters when velocity is kept.
+        settle_steps: after the pusher stopped, in which overlaps of the last steps heal.
         total_steps: steps of one push, the pusher's own included; the rest of them is coasting.
         slop: overlap that is left alone.
         overlap_correction: share of a deeper overlap that is taken away per step.
@@ -42,6 +43,7 @@ class PushPhysics:
     iterations: int = 10
     velocity_kept: float = 0.0
     seconds_per_step: float = 1.0
+    settle_steps: int = 4
     total_steps: int = 0
     slop: float = 0.002
     overlap_correction: float = 0.3
@@ -55,6 +57,7 @@ class PushPhysics:
         _check("iterations", self.iterations, 1, 1000)
         _check("velocity_kept", self.velocity_kept, 0.0, 0.999)
         _check("seconds_per_step", self.seconds_per_step, 1e-6, 10.0)
+        _check("settle_steps", self.settle_steps, 0, 1000)
         _check("total_steps", self.total_steps, 0, 1_000_000)
         _check("slop", self.slop, 0.0, 0.1)
         _check("overlap_correction", self.overlap_correction, 0.0, 0.99)
@@ -72,7 +75,7 @@ class PushPhysics:
     @classmethod
     def fast(cls) -> "PushPhysics":
         """For many roll-outs in little time; ranks pushes a little less well."""
-        return cls(step=0.1, iterations=8)
+        return cls(step=0.1, iterations=6, settle_steps=2)
 
     @classmethod
     def authors(cls) -> "PushPhysics":

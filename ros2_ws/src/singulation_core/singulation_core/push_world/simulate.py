@@ -73,7 +73,7 @@ def simulate_push(
 ) -> Arrangement:
     """The arrangement after one push.
 
-    The tool centre goes straight from ``push.start`` to ``push.end`` and is lifted there. Deterministic, and the same
+    The pusher goes straight from ``push.start`` to ``push.end`` and is lifted there. Deterministic, and the same
     in every position, direction, scale and order of the objects.
 
     Args:
@@ -129,9 +129,12 @@ def _perform(world: PushWorld, push: Push, pusher: PusherGeometry) -> None:
     heading = math.atan2(*push.direction[::-1].tolist())
     world.restore(PlaneFrame(push.start, heading, world.unit))
     world.place(_PUSHER, pusher_footprint(push, pusher), (*push.start, heading))
-    world.move({_PUSHER: (*push.end, heading)})
+    end = (*push.end, heading)
+    if world.physics.velocity_kept == 0.0:
+        world.approach(_PUSHER, end)
+    world.move({_PUSHER: end})
     own_steps = math.ceil(push.length / world.unit / world.physics.step - 1e-9)
-    world.wait(max(world.physics.total_steps - own_steps, 0))
+    world.wait(max(world.physics.total_steps - own_steps, world.physics.settle_steps))
 
 
 def _log_distances(points: FloatArray, first: NDArray[np.intp], second: NDArray[np.intp], floor: float) -> FloatArray:

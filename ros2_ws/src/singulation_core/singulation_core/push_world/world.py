@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from singulation_core.arrangement import Arrangement
 from singulation_core.errors import InvalidInputError, SingulationError
 from singulation_core.polygon import FloatArray
+from singulation_core.push_world.approach import free_share
 from singulation_core.push_world.displaced import displaced
 from singulation_core.push_world.footprint import Footprint
 from singulation_core.push_world.overlap import part_overlapping
@@ -135,16 +136,31 @@ class PushWorld:
             InvalidInputError: a pusher that is not down, or a malformed pose.
             SingulationError: ``INTERNAL`` if the solver gives numbers that are not finite.
         """
-        unknown = [name for name in poses if not self.is_down(name)]
-        if unknown:
-            down = sorted(set(self._pushers) - self._parked)
-            raise InvalidInputError(f"push world: no pusher {unknown}; down are {down}")
+        bodies = {name: self._down(name) for name in poses}
         targets = {name: self._inner_pose(pose) for name, pose in poses.items()}
-        changes = {name: _difference(targets[name], self._pushers[name][0]) for name in targets}
+        changes = {name: _difference(targets[name], bodies[name]) for name in targets}
         count = max((self._steps(name, change) for name, change in changes.items()), default=0)
         if count:
             self._drive(changes, count)
             self._stop(targets)
+
+    def approach(self, name: str, pose: ArrayLike) -> None:
+        """Move one pusher straight towards a pose until it touches a block, or gets there.
+
+        Nothing happens on the way, so no time is spent on it, and the pusher meets the block where it is rather than up
+        to a step later. Blocks must be at rest, and the pusher must keep its heading.
+
+        Raises:
+            InvalidInputError: as ``move``.
+        """
+        body = self._down(name)
+        way = self._inner_pose(pose)[:2] - np.array(body.position)
+        length = float(np.hypot(way[0], way[1]))
+        if length > 0.0:
+            # Half a slop further is a contact that the first step sees, and too shallow to be corrected.
+            share = min(free_share(self._space, body, way) + 0.5 * self.physics.slop / length, 1.0)
+            x, y = (share * way).tolist()
+            body.position = body.position + (x, y)
 
     def wait(self, steps: int) -> None:
         """Let ``steps`` steps pass while no pusher moves: blocks coast (if they do), small overlaps heal."""
@@ -166,6 +182,12 @@ class PushWorld:
         """Where the blocks are now; a block that did not move is the same object as before."""
         return displaced(self._initial, self.poses(), stamp)
 
+    def _down(self, name: str) -> pymunk.Body:
+        if not self.is_down(name):
+            down = sorted(set(self._pushers) - self._parked)
+            raise InvalidInputError(f"push world: pusher {name!r} is not down; down are {down}")
+        return self._pushers[name][0]
+
     def _remove(self, name: str) -> None:
         if name in self._pushers:
             body, _ = self._pushers.pop(name)
@@ -183,8 +205,8 @@ class PushWorld:
         footprint = self._pushers[name][1]
         step = self.physics.step
         if self.physics.velocity_kept == 0.0:
-            thinnest = min(footprint.thickness, self._block_width) / self.unit
-            step = max(min(step, 0.25 * thinnest), 0.1 * step)
+            thinnest = min(0.5 * footprint.thickness, 0.25 * self._block_width) / self.unit
+            step = max(min(step, thinnest), 0.1 * step)
         way = math.hypot(change[0], change[1]) + abs(float(change[2])) * footprint.reach / self.unit
         return math.ceil(way / step - 1e-9)
 
