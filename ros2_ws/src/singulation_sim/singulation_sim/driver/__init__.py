@@ -1,12 +1,14 @@
 """The simulated YuMi driver: ros2_control's JointTrajectoryController, the robot behind it, its gripper, its faults."""
 
-from singulation_sim.driver.driver import DriverSettings, DriverStatus, SimulatedDriver
+from singulation_sim.driver.driver import ARMS, PERIOD, DriverSettings, DriverStatus, SimulatedDriver
 from singulation_sim.driver.faults import FAULTS
 from singulation_sim.driver.mode import DriverMode
 from singulation_sim.driver.trajectory import JointTrajectory, TrajectoryPoint
 
 __all__ = [
+    "ARMS",
     "FAULTS",
+    "PERIOD",
     "DriverMode",
     "DriverSettings",
     "DriverStatus",

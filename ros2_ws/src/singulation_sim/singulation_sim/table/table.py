@@ -1,5 +1,6 @@
 """Blocks on a table and the fingertips that come down between them, push them, or land on them."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from singulation_sim.table.jaws import FingerGeometry, Fingertip
 _SMALL_MOVE = 5e-4  # m; fingertips that moved less since the last step of the physics wait for more
 _SMALL_TURN = 5e-3  # rad
 _INTO_TABLE = -1e-3  # m; a tip below this has hit the table
+_DEEPER = 1e-3  # m; a contact is reported again when the tip has gone this much further down
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,7 @@ class Table:
         self._heights = {item.id: item.height for item in arrangement.objects}
         self._tallest = max(self._heights.values(), default=0.0)
         self._placed: dict[str, tuple[float, float, float]] = {}
+        self._reported: dict[str, float] = {}  # height of the tip at its last contact [m]
 
     def arrangement(self, stamp: float) -> Arrangement:
         """Where the blocks are, stamped [s]."""
@@ -58,16 +61,16 @@ class Table:
             settle: also carry out moves that are too small to matter yet.
 
         Returns:
-            What fingertips ran into.
+            What fingertips ran into; a contact that stays is not repeated unless the tip goes deeper.
         """
         contacts = []
         for name, tip in tips.items():
-            if tip.height >= self._tallest:
-                self._lift(name)
-            elif name not in self._placed:
-                contacts += self._lower(name, tip)
-            if tip.height < _INTO_TABLE:
-                contacts.append(Contact(name, f"{name} is {-tip.height * 1e3:.1f} mm below the table surface"))
+            text = self._meet(name, tip)
+            if not text:
+                self._reported.pop(name, None)
+            elif tip.height < self._reported.get(name, math.inf) - _DEEPER:
+                self._reported[name] = tip.height
+                contacts.append(Contact(name, text))
         self._push({name: tip.pose for name, tip in tips.items() if name in self._placed}, settle)
         return contacts
 
@@ -75,16 +78,26 @@ class Table:
         """Ids of blocks that a lowered fingertip presses into, because they cannot give way."""
         return self._world.covered(self._footprint, self._placed[name]) if name in self._placed else []
 
-    def _lower(self, name: str, tip: Fingertip) -> Sequence[Contact]:
+    def _meet(self, name: str, tip: Fingertip) -> str:
+        """Put a fingertip down or lift it, as its height says; what it ran into, empty if nothing."""
+        if tip.height < _INTO_TABLE:
+            return f"{name} is {-tip.height * 1e3:.1f} mm below the table surface"
+        if tip.height >= self._tallest:
+            self._lift(name)
+        elif name not in self._placed:
+            return self._lower(name, tip)
+        return ""
+
+    def _lower(self, name: str, tip: Fingertip) -> str:
         below = self._world.covered(self._footprint, tip.pose)
         hit = [item for item in below if self._heights[item] > tip.height]
         if hit:
             x, y, _ = tip.pose
-            return [Contact(name, f"{name} came down on block(s) {hit} at x {x:.4f} m, y {y:.4f} m of the table")]
+            return f"{name} came down on block(s) {hit} at x {x:.4f} m, y {y:.4f} m of the table"
         if not below:
             self._world.place(name, self._footprint, tip.pose)
             self._placed[name] = tip.pose
-        return []
+        return ""
 
     def _lift(self, name: str) -> None:
         if self._placed.pop(name, None) is not None:

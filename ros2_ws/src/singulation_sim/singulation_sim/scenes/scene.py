@@ -1,0 +1,107 @@
+"""Blocks lying close together on the middle of the table, as a person would put a cluttered set down."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from singulation_core import Arrangement, CellGeometry, InvalidInputError, PlanarObject, ResultCode, SingulationError
+from singulation_core.polygon import FloatArray, bounding_radius, separation
+from singulation_sim.scenes.shapes import SHAPES
+
+# The paper's easy sets are squares, its hard sets mix the three shapes; the groups are those of its simulations.
+SCENES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"mixed": ("square", "triangle", "rectangle"), "squares": ("square",)}
+    | {f"group_{k}": (f"group_{k}",) for k in range(4)}
+)
+_FEWEST, _MOST = 3, 7  # blocks of a set in the paper
+_HEIGHTS = (0.02, 0.04)  # m
+_GAPS = (0.001, 0.006)  # m between neighbours
+_MIDDLE = 0.03  # m; how far from the middle of the workspace the first block may lie
+_TRIES = 200
+_CLOSE = 1e-4  # m; how exactly a gap is met
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    outline: FloatArray
+    centre: FloatArray
+    radius: float
+
+
+def random_scene(
+    scene: str = "mixed", objects: int = 0, seed: int = 0, cell: CellGeometry | None = None, margin: float = 0.04
+) -> Arrangement:
+    """A set of blocks, each close to another, inside the workspace.
+
+    Args:
+        scene: one of ``SCENES``.
+        objects: how many; 0 for a random number from 3 to 7 as in the paper.
+        seed: same seed, same scene.
+        cell: whose workspace.
+        margin: to the border of the workspace [m].
+
+    Raises:
+        InvalidInputError: unknown scene or a negative number of blocks.
+        SingulationError: ``OUTSIDE_WORKSPACE`` if so many blocks do not fit.
+    """
+    if scene not in SCENES:
+        raise InvalidInputError(f"unknown scene {scene!r}; one of: {', '.join(SCENES)}")
+    if not (objects >= 0):
+        raise InvalidInputError(f"scene: {objects} objects, need 0 (a random number) or more")
+    rng = np.random.default_rng(seed)
+    count = objects or int(rng.integers(_FEWEST, _MOST + 1))
+    workspace = (cell or CellGeometry()).workspace
+    for _ in range(_TRIES):
+        outlines = _cluster(rng, SCENES[scene], count, workspace, margin)
+        if outlines is not None:
+            break
+    else:
+        raise SingulationError(
+            ResultCode.OUTSIDE_WORKSPACE, f"scene: {count} blocks do not fit into the workspace {workspace}"
+        )
+    blocks = [PlanarObject(k + 1, outline, float(rng.uniform(*_HEIGHTS))) for k, outline in enumerate(outlines)]
+    return Arrangement(blocks)
+
+
+def _cluster(
+    rng: np.random.Generator, kinds: Sequence[str], count: int, workspace: Sequence[float], margin: float
+) -> list[FloatArray] | None:
+    """Outlines of ``count`` blocks; None if one of them found no place."""
+    placed: list[_Placed] = []
+    x_min, x_max, y_min, y_max = workspace
+    middle = np.array(((x_min + x_max) / 2.0, (y_min + y_max) / 2.0))
+    low, high = np.array((x_min, y_min)) + margin, np.array((x_max, y_max)) - margin
+    for _ in range(count):
+        for _ in range(_TRIES):
+            outline = _turned(SHAPES[kinds[int(rng.integers(len(kinds)))]](rng), rng.uniform(0.0, 2.0 * np.pi))
+            centre = _beside(rng, outline, placed) if placed else middle + rng.uniform(-_MIDDLE, _MIDDLE, 2)
+            lies = outline + centre
+            if (lies >= low).all() and (lies <= high).all():
+                placed.append(_Placed(lies, centre, bounding_radius(lies, centre)))
+                break
+        else:
+            return None
+    return [item.outline for item in placed]
+
+
+def _beside(rng: np.random.Generator, outline: FloatArray, placed: Sequence[_Placed]) -> FloatArray:
+    """Centre at which the outline has a small gap to the first block met on its way towards a random one."""
+    gap, radius = rng.uniform(*_GAPS), bounding_radius(outline, np.zeros(2))
+    target = placed[int(rng.integers(len(placed)))]
+    angle = rng.uniform(0.0, 2.0 * np.pi)
+    direction = np.array((np.cos(angle), np.sin(angle)))
+    distance = sum(2.0 * item.radius for item in placed) + radius + target.radius
+    # The gap can shrink by no more than the outline advances, so advancing by what is left of it never overlaps.
+    while True:
+        centre = target.centre + distance * direction
+        room = min(separation(outline + centre, item.outline) for item in placed) - gap
+        if not (room > _CLOSE):
+            return np.asarray(centre)
+        distance -= room
+
+
+def _turned(outline: FloatArray, angle: float) -> FloatArray:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.asarray(outline @ np.array(((cosine, sine), (-sine, cosine))))
