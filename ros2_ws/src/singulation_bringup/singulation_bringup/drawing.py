@@ -23,9 +23,13 @@ def colour_of(identity: int) -> tuple[float, float, float]:
     return tuple(_COLOURS[identity % len(_COLOURS)])
 
 
-def extent(arrangements: list[Arrangement], workspace: Workspace | None = None) -> Workspace:
+def extent(
+    arrangements: list[Arrangement], push: Push | None = None, workspace: Workspace | None = None
+) -> Workspace:
     """x_min, x_max, y_min, y_max around everything to be shown [m]."""
     corners = [item.outline for arrangement in arrangements for item in arrangement.objects]
+    if push is not None:
+        corners.append(np.array((push.start, push.end)))
     if workspace is not None:
         corners.append(np.array(((workspace[0], workspace[2]), (workspace[1], workspace[3]))))
     if not corners:
@@ -100,7 +104,7 @@ def picture_of_push(
     workspace: Workspace | None = None,
 ) -> None:
     """Three panels: before, planned push, after, with s(A), smallest gap and the gain."""
-    shown = extent([before, after], workspace)
+    shown = extent([before, after], push, workspace)
     figure = Figure(figsize=(13.0, 5.2), layout="constrained")
     panels = figure.subplots(1, 3, sharey=True)
     draw_table(panels[0], shown, f"before: s(A) = {distances[0]:.3f}, smallest gap {1e3 * gaps[0]:.1f} mm", workspace)
@@ -134,7 +138,7 @@ def picture_of_frame(path: Path, view: FloatArray | None, seen: Arrangement, pus
         panels[0].imshow(view)
         panels[0].set_axis_off()
         panels[0].set_title("camera view, segments in colour", fontsize=10)
-    draw_table(panels[-1], extent([seen]), "polygons and planned push on the table")
+    draw_table(panels[-1], extent([seen], push), "polygons and planned push on the table")
     draw_arrangement(panels[-1], seen)
     if push is not None:
         draw_push(panels[-1], push)

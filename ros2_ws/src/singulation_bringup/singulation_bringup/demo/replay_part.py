@@ -21,7 +21,8 @@ from singulation_perception.playback import Recording
 
 _START = 120.0  # s; the first start on a machine compiles the segmentation
 _FRAME = 60.0  # s for one cloud
-_PLANE_FIT = ("camera_pose_source:=plane_fit", "crop_to_workspace:=false")
+# Of a foreign recording neither the camera pose nor the size of the blocks is known.
+_PLANE_FIT = ("camera_pose_source:=plane_fit", "crop_to_workspace:=false", "max_height:=1.0")
 _WIDE_TABLE = "workspace:=[-5.0, 5.0, -5.0, 5.0]"
 
 
