@@ -23,9 +23,7 @@ def colour_of(identity: int) -> tuple[float, float, float]:
     return tuple(_COLOURS[identity % len(_COLOURS)])
 
 
-def extent(
-    arrangements: list[Arrangement], push: Push | None = None, workspace: Workspace | None = None
-) -> Workspace:
+def extent(arrangements: list[Arrangement], push: Push | None = None, workspace: Workspace | None = None) -> Workspace:
     """x_min, x_max, y_min, y_max around everything to be shown [m]."""
     corners = [item.outline for arrangement in arrangements for item in arrangement.objects]
     if push is not None:

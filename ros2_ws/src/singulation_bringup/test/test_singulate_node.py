@@ -1,0 +1,197 @@
+"""The coordinator over ROS, with a scripted cell node that plans, pushes and looks."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from singulation_msgs.action import ExecutePush, Singulate
+from singulation_msgs.msg import Arrangement as ArrangementMsg
+from singulation_msgs.msg import ContactMode as ContactModeMsg
+from singulation_msgs.msg import PushOutcome
+from singulation_msgs.srv import PlanPush
+from std_msgs.msg import Header
+from std_srvs.srv import Trigger
+
+from singulation_bringup.singulate_node import SingulateNode
+from singulation_core import Arrangement, ContactMode, PlanarObject, Push, ResultCode, conversions
+from singulation_node.qos import LATCHED, STATE
+from singulation_node.testing import Mailbox, spinning, wait_until
+
+SQUARE = np.array(((0.0, 0.0), (0.04, 0.0), (0.04, 0.04), (0.0, 0.04)))
+
+
+class ScriptedCell(Node):
+    """Camera, planner and robot in one: every push widens the gap by 10 mm."""
+
+    def __init__(self, context):
+        super().__init__("scripted_cell", context=context)
+        self.gap, self.blind, self.code, self.slow = 0.001, False, ResultCode.OK, False
+        self.stood_still = threading.Event()
+        group = ReentrantCallbackGroup()
+        self.objects = self.create_publisher(ArrangementMsg, "objects", STATE)
+        self.create_service(Trigger, "trigger_frame", self.trigger, callback_group=group)
+        self.create_service(PlanPush, "plan_push", self.plan, callback_group=group)
+        self.server = ActionServer(
+            self,
+            ExecutePush,
+            "execute_push",
+            self.execute,
+            callback_group=group,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+
+    def trigger(self, request, response):
+        blocks = [PlanarObject(7 * i, SQUARE + (i * (0.04 + self.gap), 0.0)) for i in range(2)]
+        if not self.blind:
+            self.objects.publish(conversions.arrangement_to_msg(Arrangement(blocks), self.get_clock().now().to_msg()))
+        response.success = True
+        return response
+
+    def plan(self, request, response):
+        push = Push((-0.02, 0.02), (0.02, 0.02), ContactMode.SINGLE_POINT, target_id=7, policy=request.policy or "own")
+        response.push = conversions.push_to_msg(push, Header(frame_id="table", stamp=request.arrangement.header.stamp))
+        return response
+
+    def execute(self, handle):
+        while self.slow and not handle.is_cancel_requested:
+            time.sleep(0.01)
+        if handle.is_cancel_requested:
+            self.stood_still.set()
+            handle.canceled()
+            return ExecutePush.Result(code=int(ResultCode.CANCELLED), message="stands still")
+        if self.code is ResultCode.OK:
+            self.gap += 0.01
+            handle.succeed()
+        else:
+            handle.abort()
+        return ExecutePush.Result(code=int(self.code), message="scripted")
+
+
+@pytest.fixture
+def setting(ros_context):
+    quick = [Parameter(name, value=0.5) for name in ("view_timeout", "ready_timeout")]
+    node, cell = SingulateNode(context=ros_context, parameter_overrides=quick), ScriptedCell(ros_context)
+    with spinning(node, cell, threads=8):
+        assert node.start()
+        yield node, cell
+        cell.slow = False
+        cell.server.destroy()
+
+
+@pytest.fixture
+def ask(setting):
+    client = ActionClient(setting[1], Singulate, "singulate")
+    wait_until(client.server_is_ready, what="singulate")
+    feedback = []
+
+    def send(**fields):
+        goal = Singulate.Goal(**{"max_pushes": 5, "min_gap": 0.02, **fields})
+        future = client.send_goal_async(goal, feedback_callback=lambda message: feedback.append(message.feedback))
+        wait_until(future.done, what="answer")
+        return future.result()
+
+    send.feedback = feedback
+    yield send
+    client.destroy()
+
+
+def outcome(handle):
+    future = handle.get_result_async()
+    wait_until(future.done, what="result")
+    return future.result().status, future.result().result
+
+
+def expect_success(ask):
+    status, result = outcome(ask())
+    assert (status, result.code) == (GoalStatus.STATUS_SUCCEEDED, ResultCode.OK)
+    return result
+
+
+def test_it_singulates_and_tells_every_push(setting, ask):
+    outcomes = Mailbox(setting[1], PushOutcome, "outcomes", LATCHED)
+    result = expect_success(ask)
+    assert len(result.outcomes) == 2
+    assert len(result.singulation_distance) == 3
+    assert result.smallest_gap == pytest.approx(0.021, abs=1e-6)
+    assert outcomes.wait(2).push.policy == "own"
+    assert outcomes.messages[0].push.target_id == 1  # lasting id of perception's 7
+    assert outcomes.messages[0].singulation_distance_after > outcomes.messages[0].singulation_distance_before
+    assert [message.pushes_done for message in ask.feedback] == sorted(m.pushes_done for m in ask.feedback)
+
+
+def test_a_camera_that_sends_nothing_is_no_fresh_view(setting, ask):
+    setting[1].blind = True
+    status, result = outcome(ask())
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.NO_FRESH_VIEW)
+    assert "within 0.5 s" in result.message
+    setting[1].blind = False
+    expect_success(ask)
+
+
+def test_a_fault_of_the_robot_ends_it_with_its_code(setting, ask):
+    setting[1].code = ResultCode.SAFETY_STOP
+    status, result = outcome(ask())
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.SAFETY_STOP)
+    assert [one.code for one in result.outcomes] == [ResultCode.SAFETY_STOP]
+    setting[1].code = ResultCode.OK
+    expect_success(ask)
+
+
+def test_cancelled_means_standing_still(setting, ask):
+    setting[1].slow = True
+    handle = ask()
+    wait_until(lambda: ask.feedback, what="first look")
+    wait_until(handle.cancel_goal_async().done, what="answer to the cancel")
+    status, result = outcome(handle)
+    assert (status, result.code) == (GoalStatus.STATUS_CANCELED, ResultCode.CANCELLED)
+    assert setting[1].stood_still.is_set()
+    setting[1].slow = False
+    expect_success(ask)
+
+
+def test_a_second_goal_is_refused_while_one_runs(setting, ask):
+    setting[1].slow = True
+    first = ask()
+    wait_until(lambda: ask.feedback, what="first look")
+    assert not ask().accepted
+    setting[1].slow = False
+    assert outcome(first)[1].code == ResultCode.OK
+    setting[1].gap = 0.001
+    expect_success(ask)
+
+
+@pytest.mark.parametrize("gap", [-0.01, float("nan"), 5.0])
+def test_a_senseless_goal_is_rejected(ask, gap):
+    assert not ask(min_gap=gap).accepted
+    expect_success(ask)
+
+
+def test_an_unknown_contact_mode_names_the_known_ones(ask):
+    status, result = outcome(ask(contact_mode=ContactModeMsg(value=9)))
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.UNKNOWN_CONTACT_MODE)
+    assert "two_point" in result.message
+    expect_success(ask)
+
+
+def test_what_is_missing_is_named(ros_context):
+    quick = [Parameter(name, value=0.2) for name in ("view_timeout", "ready_timeout")]
+    node, client_node = (
+        SingulateNode(context=ros_context, parameter_overrides=quick),
+        Node("client", context=ros_context),
+    )
+    with spinning(node, client_node):
+        assert node.start()
+        client = ActionClient(client_node, Singulate, "singulate")
+        wait_until(client.server_is_ready, what="singulate")
+        future = client.send_goal_async(Singulate.Goal(max_pushes=1, min_gap=0.01))
+        wait_until(future.done)
+        status, result = outcome(future.result())
+        client.destroy()
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.NOT_READY)
+    assert "plan_push" in result.message
