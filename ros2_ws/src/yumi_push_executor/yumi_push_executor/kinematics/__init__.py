@@ -1,6 +1,6 @@
 """The YuMi's two arms: model, forward and inverse kinematics."""
 
 from yumi_push_executor.kinematics.arm import TIP_OFFSET, YumiArm
-from yumi_push_executor.kinematics.postures import CLEAR_VIEW
+from yumi_push_executor.kinematics.postures import BRANCHES, CLEAR_VIEW, FOLDED
 
-__all__ = ["CLEAR_VIEW", "TIP_OFFSET", "YumiArm"]
+__all__ = ["BRANCHES", "CLEAR_VIEW", "FOLDED", "TIP_OFFSET", "YumiArm"]

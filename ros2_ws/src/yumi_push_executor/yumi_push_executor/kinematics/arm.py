@@ -48,6 +48,13 @@ class YumiArm:
         pose[:3, 3] += TIP_OFFSET * pose[:3, 2]
         return pose
 
+    def tip_way(self, start: FloatArray, end: FloatArray) -> float:
+        """Longest way of the tips per unit of a move that is straight in joint space from (7,) to (7,) [m].
+
+        A move that takes T seconds at constant joint speeds moves the tips at most at this value / T.
+        """
+        return float(chain.tip_way(self.chain, start, end, TIP_OFFSET, 24))
+
     def jacobian(self, q: ArrayLike) -> FloatArray:
         """(6, 7) Jacobian of ``tool0``, linear above angular, in ``yumi_body``."""
         jacobian = np.empty((6, JOINTS))
