@@ -103,7 +103,9 @@ def picture_of_push(
 ) -> None:
     """Three panels: before, planned push, after, with s(A), smallest gap and the gain."""
     shown = extent([before, after], push, workspace)
-    figure = Figure(figsize=(13.0, 5.2), layout="constrained")
+    width = 4.3  # inches of a panel, whose height follows from what is shown
+    height = width * (shown[1] - shown[0]) / (shown[3] - shown[2])
+    figure = Figure(figsize=(3 * width, height + 1.0), layout="constrained")
     panels = figure.subplots(1, 3, sharey=True)
     draw_table(panels[0], shown, f"before: s(A) = {distances[0]:.3f}, smallest gap {1e3 * gaps[0]:.1f} mm", workspace)
     draw_arrangement(panels[0], before)

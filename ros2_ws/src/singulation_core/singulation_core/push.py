@@ -72,11 +72,12 @@ def _point(value: ArrayLike, name: str) -> FloatArray:
 class PusherGeometry:
     """Footprint of the YuMi's jaws on the table [m].
 
-    Defaults from measurements of the SmartGripper's fingers: a closed pair is about 12 mm by 12 mm at the tip
-    (single point: a disc of 6 mm radius), the planar side about 12.4 mm wide and 12 mm thick.
+    Defaults from measurements of the SmartGripper's fingers: a closed pair is 12.4 mm by 12 mm at the tip. A single
+    point is the disc around it, so that a start that is free for the disc is free for the jaws at any yaw; the planar
+    side is 12.4 mm wide and 12 mm thick.
     """
 
-    tip_radius: float = 0.006
+    tip_radius: float = 0.0087
     edge_width: float = 0.0124
     edge_thickness: float = 0.012
 

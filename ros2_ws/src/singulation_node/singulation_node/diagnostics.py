@@ -27,12 +27,12 @@ class Diagnostics:
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._timer = node.create_timer(_PERIOD, self.publish)
 
-    def report(self, name: str, ok: bool, text: str, **values: Any) -> None:
+    def report(self, name: str, ok: bool, text: str, /, **values: Any) -> None:
         """Replace what is said of a component; ``values`` are shown as key and value."""
         level = DiagnosticStatus.OK if ok else DiagnosticStatus.ERROR
         self._store(name, level, text, values)
 
-    def warn(self, name: str, text: str, **values: Any) -> None:
+    def warn(self, name: str, text: str, /, **values: Any) -> None:
         """As ``report``, for what works but deserves a look."""
         self._store(name, DiagnosticStatus.WARN, text, values)
 

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import rclpy
 from rclpy.executors import MultiThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
@@ -81,6 +82,9 @@ def _spin(executor: Any, node: Any, stop: threading.Event) -> None:
     while not stop.is_set():
         try:
             executor.spin_once(timeout_sec=_WAKE)
+        except (_rclpy.InvalidHandle, _rclpy.RCLError) as error:
+            # An entity was destroyed between being listed and being waited for; the next turn does not list it.
+            node.get_logger().debug(f"executor: {error}")
         except Exception as error:  # from a callback that is not ours, such as one inside rclpy
             report_failure(node, "executor", error)
 

@@ -59,6 +59,7 @@ class CellPart:
         self._outcomes: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._film = Film(CellGeometry())
         self._now = 0  # ns of simulated time
+        self._recording = True
 
     def run(self, processes: NodeProcesses, observer: Observer) -> None:
         """Until separated, out of pushes, or stopped.
@@ -75,6 +76,7 @@ class CellPart:
                 with self._summary.timed("cell loop"):
                     result = self._singulate(observer)
             finally:
+                self._recording = False
                 with self._summary.timed("pictures"):
                     self._finish()
         self._conclude(result)
@@ -84,18 +86,22 @@ class CellPart:
             name = topic if topic.startswith("/") else f"/{topic}"
 
             def record(message: Any, name: str = name) -> None:
-                recorder.write(name, message, self._now)
+                self._record(recorder, name, message)
 
             (observer.hear_cloud if kind is PointCloud2 else observer.hear)(kind, topic, record)
 
         def record_outcome(message: Any) -> None:
-            recorder.write("/outcomes", message, self._now)
+            self._record(recorder, "/outcomes", message)
             self._outcomes.put(message)
 
         observer.hear(PushOutcome, "outcomes", record_outcome, LATCHED)
         observer.hear(Clock, "/clock", self._on_clock)
         observer.hear(ArrangementMsg, "true_objects", self._film.see_table)
         observer.hear(JointState, "joint_states", self._film.see_arms)
+
+    def _record(self, recorder: BagRecorder, topic: str, message: Any) -> None:
+        if self._recording:
+            recorder.write(topic, message, self._now)
 
     def _on_clock(self, message: Any) -> None:
         self._now = message.clock.sec * 10**9 + message.clock.nanosec
@@ -104,9 +110,14 @@ class CellPart:
         options = self._options
         say(f"simulated cell: {options.objects} blocks, seed {options.seed}, {options.speed:g} times real time")
         scene = ["--seed", str(options.seed), "--objects", str(options.objects), "--speed", str(options.speed)]
-        processes.start("singulation_sim", "sim_cell", scene)
+        clock = ["--ros-args", "-p", "publish_clock:=true"]  # every node lives in simulated time, at any speed
+        processes.start("singulation_sim", "sim_cell", [*scene, *clock])
         for package, executable in _NODES:
-            processes.start(package, executable, ["--autostart", "--ros-args", "-p", "use_sim_time:=true"])
+            settings = ["-p", "use_sim_time:=true"]
+            if executable == "planner_node":
+                # Faster than real time, the same computing takes more of the simulated seconds.
+                settings += ["-p", f"max_age:={5.0 + 15.0 * options.speed}", "-p", "plan_on_arrival:=false"]
+            processes.start(package, executable, ["--autostart", "--ros-args", *settings])
         for _, name in _NODES:
             say(f"  waiting for {name}")
             observer.wait(partial(_is_active, observer, name), _START, name)

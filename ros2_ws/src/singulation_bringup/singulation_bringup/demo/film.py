@@ -15,8 +15,6 @@ from singulation_core.polygon import FloatArray
 from singulation_core.transforms import inverse
 from yumi_push_executor import YumiArm
 
-Frame = NDArray[np.uint8]
-
 _PERIOD = 0.1  # s of simulated time between two pictures
 _SHOWN = 12.0  # pictures a second
 _MOST = 360  # pictures; a longer run is thinned
@@ -24,6 +22,11 @@ _SCALE = 1300.0  # pixels for a metre
 _BORDER = 0.03  # m around the workspace
 _TIP = 0.136  # m from tool0 to the fingertips
 _NEAR = 0.06  # m above the table up to which a tip is drawn
+
+_PAPER, _LINE, _INK, _BLOCKS, _COLOURS = 0, 1, 2, 3, 10  # places in the palette
+_PALETTE = [250, 250, 250, 190, 190, 190, 25, 25, 25] + [
+    round(255 * part) for identity in range(_COLOURS) for part in colour_of(identity)
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,29 +77,30 @@ class Film:
         moments = self._moments[:: 1 + len(self._moments) // _MOST]
         if not moments:
             return False
-        pictures = [Image.fromarray(self._draw(moment)).quantize(32) for moment in moments]
+        pictures = [self._draw(moment) for moment in moments]
         pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=round(1000 / _SHOWN), loop=0)
         return True
 
-    def _draw(self, moment: _Moment) -> Frame:
+    def _draw(self, moment: _Moment) -> Image.Image:
+        """A picture of few colours, drawn as numbers into a palette: GIF needs no search for colours then."""
         x_min, x_max, y_min, y_max = self._cell.workspace
         height = round((x_max - x_min + 2 * _BORDER) * _SCALE)
         width = round((y_max - y_min + 2 * _BORDER) * _SCALE)
-        picture = np.full((height, width, 3), 250, dtype=np.uint8)
-        corners = self._pixels(self._cell.workspace_polygon)
-        cv2.polylines(picture, [corners], True, (190, 190, 190), 1, cv2.LINE_AA)
+        picture = np.full((height, width), _PAPER, dtype=np.uint8)
+        cv2.polylines(picture, [self._pixels(self._cell.workspace_polygon)], True, _LINE)
         for item in moment.blocks.objects:
-            colour = tuple(int(255 * part) for part in colour_of(item.id))
             outline = self._pixels(item.outline)
-            cv2.fillPoly(picture, [outline], colour, cv2.LINE_AA)
-            cv2.polylines(picture, [outline], True, (40, 40, 40), 1, cv2.LINE_AA)
+            cv2.fillPoly(picture, [outline], _BLOCKS + item.id % _COLOURS)
+            cv2.polylines(picture, [outline], True, _INK)
         for tip in moment.tips:
             if tip[2] <= _NEAR:
                 centre = tuple(int(value) for value in self._pixels(tip[None, :2])[0])
-                cv2.circle(picture, centre, round(0.006 * _SCALE), (20, 20, 20), -1, cv2.LINE_AA)
+                cv2.circle(picture, centre, round(0.006 * _SCALE), _INK, -1)
         elapsed = moment.time - self._moments[0].time
-        cv2.putText(picture, f"{elapsed:.1f} s", (8, height - 10), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (60, 60, 60), 1)
-        return picture
+        cv2.putText(picture, f"{elapsed:.1f} s", (8, height - 10), cv2.FONT_HERSHEY_SIMPLEX, 0.5, _INK)
+        image = Image.fromarray(picture, mode="P")
+        image.putpalette(_PALETTE)
+        return image
 
     def _pixels(self, points: FloatArray) -> NDArray[np.int32]:
         """Table x, y -> column, row: the robot stands below the picture, y runs to the left."""
