@@ -63,11 +63,10 @@ class SimSettings:
         _CELL.workspace, "x_min, x_max, y_min, y_max of the table frame [m]", read_only=True
     )
 
-    left_joints: tuple[str, ...] = parameter(_DRIVER.joints["left"], "shoulder to flange", read_only=True)
-    right_joints: tuple[str, ...] = parameter(_DRIVER.joints["right"], "shoulder to flange", read_only=True)
-    finger_joints: tuple[str, ...] = parameter(
-        tuple(_DRIVER.finger_joints.values()), "finger joint of the left and the right hand", read_only=True
-    )
+    left_arm_joints: tuple[str, ...] = parameter(_DRIVER.joints["left"], "shoulder to flange", read_only=True)
+    right_arm_joints: tuple[str, ...] = parameter(_DRIVER.joints["right"], "shoulder to flange", read_only=True)
+    left_finger_joint: str = parameter(_DRIVER.finger_joints["left"], "joint of the left fingers", read_only=True)
+    right_finger_joint: str = parameter(_DRIVER.finger_joints["right"], "joint of the right fingers", read_only=True)
     lag: float = parameter(_DRIVER.lag, "time constant of the joints [s]", low=0.0, high=1.0, read_only=True)
     position_noise: float = parameter(
         _DRIVER.position_noise, "noise of joint positions [rad]", low=0.0, high=0.01, read_only=True
@@ -92,9 +91,9 @@ class SimSettings:
     grippers_calibrated: bool = parameter(True, "at the start and after a reset", read_only=True)
 
     def __post_init__(self) -> None:
-        names = (*self.left_joints, *self.right_joints, *self.finger_joints)
-        if (len(self.left_joints), len(self.right_joints), len(self.finger_joints)) != (7, 7, 2):
-            raise InvalidInputError("left_joints and right_joints need 7 names each, finger_joints 2")
+        names = (*self.left_arm_joints, *self.right_arm_joints, self.left_finger_joint, self.right_finger_joint)
+        if (len(self.left_arm_joints), len(self.right_arm_joints)) != (7, 7):
+            raise InvalidInputError("left_arm_joints and right_arm_joints need 7 names each")
         if len(set(names)) != len(names):
             raise InvalidInputError(f"joint names {sorted(names)}: each may occur once")
         if len(self.workspace) != 4 or not (
@@ -129,8 +128,8 @@ class SimSettings:
     def driver(self) -> DriverSettings:
         """Properties of the simulated robot."""
         return DriverSettings(
-            {"left": self.left_joints, "right": self.right_joints},
-            dict(zip(("left", "right"), self.finger_joints, strict=True)),
+            {"left": self.left_arm_joints, "right": self.right_arm_joints},
+            {"left": self.left_finger_joint, "right": self.right_finger_joint},
             self.lag,
             self.position_noise,
             self.velocity_noise,

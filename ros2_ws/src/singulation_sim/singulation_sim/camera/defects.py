@@ -53,9 +53,10 @@ def add_defects(
     chance = rng.random(distance.shape, dtype=np.float32)
     noise = rng.standard_normal(distance.shape, dtype=np.float32)
     near, far = _edges(distance)
-    edge = far - near > _STEP
-    flies = edge & (chance >= 1.0 - defects.flying)
-    measured[flies] = (near + (far - near) * rng.random(distance.shape, dtype=np.float32))[flies]
+    edge = far > near + np.float32(_STEP)
+    flies = edge & np.isfinite(far) & (chance >= 1.0 - defects.flying)
+    where = rng.random(distance.shape, dtype=np.float32)[flies]
+    measured[flies] = near[flies] + (far[flies] - near[flies]) * where
     lost = ~np.isfinite(measured) | (chance < np.where(edge, defects.edge_loss, defects.random_loss))
     lost |= (cosine < defects.grazing) | (~lit & defects.shadows)
     measured += np.float32(defects.noise) * noise

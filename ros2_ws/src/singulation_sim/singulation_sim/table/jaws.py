@@ -12,7 +12,7 @@ from yumi_push_executor.kinematics import TIP_OFFSET
 
 @dataclass(frozen=True, slots=True)
 class FingerGeometry:
-    """Tip of one SmartGripper finger [m], measured on the published mesh; the fingers close along the tool's y axis.
+    """Tip of one SmartGripper finger [m], measured on the published mesh; the fingers close along the tool's x axis.
 
     Args:
         thickness: along the closing direction.
@@ -51,7 +51,7 @@ def fingertips(tool: FloatArray, opening: float, finger: FingerGeometry) -> tupl
         finger: their geometry.
     """
     middle = tool[:3, 3] + TIP_OFFSET * tool[:3, 2]
-    closing = tool[:3, 1]
+    closing = tool[:3, 0]
     heading = math.atan2(closing[1], closing[0])
     offset = (opening + finger.thickness) / 2.0 * closing
     first, second = (middle + sign * offset for sign in (-1.0, 1.0))

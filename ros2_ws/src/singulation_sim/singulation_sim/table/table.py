@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from singulation_core import Arrangement
+from singulation_core.polygon import separation
 from singulation_core.push_world import PushPhysics, PushWorld
 from singulation_sim.table.jaws import FingerGeometry, Fingertip
 
 _SMALL_MOVE = 5e-4  # m; fingertips that moved less since the last step of the physics wait for more
 _SMALL_TURN = 5e-3  # rad
+_TOUCHING = 1e-4  # m; overlap that still counts as touching
 _INTO_TABLE = -1e-3  # m; a tip below this has hit the table
 _DEEPER = 1e-3  # m; a contact is reported again when the tip has gone this much further down
 
@@ -43,6 +45,7 @@ class Table:
     ) -> None:
         self.finger = finger or FingerGeometry()
         self._footprint = self.finger.footprint
+        self._outline = self._footprint.polygons[0]
         self._world = PushWorld(arrangement, physics)
         self._heights = {item.id: item.height for item in arrangement.objects}
         self._tallest = max(self._heights.values(), default=0.0)
@@ -76,7 +79,7 @@ class Table:
 
     def squeezed(self, name: str) -> Sequence[int]:
         """Ids of blocks that a lowered fingertip presses into, because they cannot give way."""
-        return self._world.covered(self._footprint, self._placed[name]) if name in self._placed else []
+        return self._below(self._placed[name]) if name in self._placed else []
 
     def _meet(self, name: str, tip: Fingertip) -> str:
         """Put a fingertip down or lift it, as its height says; what it ran into, empty if nothing."""
@@ -89,7 +92,7 @@ class Table:
         return ""
 
     def _lower(self, name: str, tip: Fingertip) -> str:
-        below = self._world.covered(self._footprint, tip.pose)
+        below = self._below(tip.pose)
         hit = [item for item in below if self._heights[item] > tip.height]
         if hit:
             x, y, _ = tip.pose
@@ -98,6 +101,14 @@ class Table:
             self._world.place(name, self._footprint, tip.pose)
             self._placed[name] = tip.pose
         return ""
+
+    def _below(self, pose: tuple[float, float, float]) -> Sequence[int]:
+        """Ids of blocks that a fingertip at this pose overlaps."""
+        x, y, heading = pose
+        cosine, sine = math.cos(heading), math.sin(heading)
+        outline = self._outline @ np.array(((cosine, sine), (-sine, cosine))) + (x, y)
+        blocks = self._world.arrangement().objects
+        return [item.id for item in blocks if separation(outline, item.outline) < -_TOUCHING]
 
     def _lift(self, name: str) -> None:
         if self._placed.pop(name, None) is not None:
