@@ -11,13 +11,14 @@ _PERIOD = 0.02  # s between two steps if no state arrives
 
 
 class MotionRunner:
-    """Runs one motion in the calling thread; ``cancel``, ``halt`` and ``abandon`` may come from any thread, any time.
+    """Runs one motion in the calling thread; ``halt`` and ``abandon`` may come from any thread, any time.
 
     Args:
         view: of the robot.
         limits: of the supervision.
         send: hands an order to its controller.
         clock: the present.
+        cancelled: whether the client has cancelled; asked at every step.
     """
 
     def __init__(
@@ -26,19 +27,16 @@ class MotionRunner:
         limits: SupervisionLimits,
         send: Callable[[Order], None],
         clock: Callable[[], Instant],
+        cancelled: Callable[[], bool],
     ) -> None:
         self._view = view
         self._limits = limits
         self._send = send
         self._clock = clock
         self._halt_reason = ""
-        self._cancelled = False
+        self._cancelled = cancelled
         self._abandoned = False
-
-    def cancel(self) -> None:
-        """Stop on the path, stay there."""
-        self._cancelled = True
-        self._view.wake()
+        self.moved = False  # whether anything has been ordered
 
     def halt(self, reason: str) -> None:
         """Stop both arms, stay there."""
@@ -54,7 +52,7 @@ class MotionRunner:
         """The outcome if it was cancelled or halted before anything moved."""
         if self._halt_reason:
             return Outcome(ResultCode.HALTED, f"{self._halt_reason}; nothing had moved yet", standing=True)
-        if self._cancelled:
+        if self._cancelled():
             return Outcome(ResultCode.CANCELLED, "cancelled by the client; nothing had moved yet", standing=True)
         return None
 
@@ -70,6 +68,7 @@ class MotionRunner:
             return early
         with self._view.lock:
             step = supervisor.start(self._view.driver, self._clock())
+            self.moved = True
             self._send_all(step)
         try:
             return self._follow(supervisor, on_step)
@@ -93,7 +92,7 @@ class MotionRunner:
     def _pass_on_requests(self, supervisor: Supervisor) -> None:
         if self._halt_reason:
             supervisor.halt(self._halt_reason)
-        elif self._cancelled:
+        elif self._cancelled():
             supervisor.cancel()
 
     def _send_all(self, step: Step) -> None:

@@ -15,13 +15,14 @@ class SupervisionLimits:
     machine; ``wall_silence`` bounds what the steady clock alone allows, so a paused or stepped clock cannot disable it.
     """
 
-    state_age: float = 0.15  # joint states older than this are lost; at 50 mm/s the tip moves 7.5 mm meanwhile
+    state_age: float = 0.25  # joint states older than this are lost; at 50 mm/s the tip moves 12.5 mm meanwhile
     driver_age: float = 1.0  # a driver polled over RWS reports at 5 Hz
     state_delay: float = 0.5  # between a state's stamp and its arrival; also into the future
     wall_silence: float = 5.0
-    blind_time: float = 0.3  # longest gap between two steps of the supervision
+    blind_time: float = 0.5  # longest gap between two steps of the supervision
 
     start_distance: float = 0.03  # joint distance between the measured and the planned start
+    clock_skew: float = 0.1  # by which stamps may differ from this machine's clock while an arm is followed
     start_latency: float = 0.4  # until an ordered motion is seen to begin
     path_tolerance: float = 0.02  # joint distance from the commanded path (10 mm at a reach of 0.5 m)
     lag: float = 0.25  # how far the arm may run behind the command, beyond the start latency

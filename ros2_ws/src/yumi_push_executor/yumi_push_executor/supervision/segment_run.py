@@ -112,10 +112,10 @@ class SegmentRun:
         return latest
 
     def _stop(self, following: FollowingWatch, how: Stop, time: float) -> ArmOrder:
-        elapsed = following.elapsed(time)
         if how is Stop.ALONG_PATH and following.begun:
+            elapsed = following.matched(time)
             return ArmOrder(self.segment.arm, stop_along(following.trajectory, elapsed, self._limits.stop_duration))
-        commanded, _ = following.trajectory.sample(elapsed)
+        commanded, _ = following.trajectory.sample(following.elapsed(time))
         return hold_arm(self.segment.arm, self._watch, self._limits, commanded[0])
 
     def _arm_fault(self, sample: Sample) -> Fault | None:

@@ -35,10 +35,11 @@ class StateWatch:
     """
 
     def __init__(self, limits: SupervisionLimits, ranges: dict[str, JointRange]) -> None:
-        self._limits = limits
+        self.limits = limits
         self.ranges = ranges
         self._good: deque[Sample] = deque()
-        self._problem = ""
+        self._problem = ""  # of the newest sample, if it cannot be real
+        self._delay = ""  # why the newest sample was not taken in time
         self.refused = 0  # samples out of order, too late, or not real
 
     @property
@@ -55,9 +56,10 @@ class StateWatch:
         if latest is not None and sample.taken <= latest.taken:
             self.refused += 1
             return False
-        problem = self._delay_problem(sample, now) or sample_problem(sample, self.ranges)
-        self._problem = problem
-        if problem:
+        # A late sample is no more than a missing one: a hiccup of this machine must not end a motion, silence will.
+        self._delay = self._delay_problem(sample, now)
+        self._problem = "" if self._delay else sample_problem(sample, self.ranges)
+        if self._delay or self._problem:
             self.refused += 1
             return False
         self._good.append(sample)
@@ -69,14 +71,17 @@ class StateWatch:
         """Why the stream cannot be relied on, if so."""
         latest = self.latest
         if latest is None:
-            text = self._problem or "no joint state has come yet"
+            text = self._problem or self._delay or "no joint state has come yet"
             return Fault(ResultCode.NOT_READY, text, Stop.ALONG_PATH)
         if self._problem:
             return Fault(ResultCode.STATE_LOST, self._problem, Stop.ALONG_PATH)
         silent, age = now.wall - latest.arrived, now.time - latest.taken
-        if not (min(silent, age) <= self._limits.state_age) or not (silent <= self._limits.wall_silence):
-            text = f"the last joint state is {max(age, 0.0):.2f} s old ({silent:.2f} s on the steady clock)"
-            return Fault(ResultCode.STATE_LOST, f"{text}, limit {self._limits.state_age} s", Stop.ALONG_PATH)
+        if not (min(silent, age) <= self.limits.state_age) or not (silent <= self.limits.wall_silence):
+            text = (
+                f"the last good joint state is {max(age, 0.0):.2f} s old ({silent:.2f} s on the steady clock), limit "
+                f"{self.limits.state_age} s"
+            )
+            return Fault(ResultCode.STATE_LOST, "; ".join(filter(None, (text, self._delay))), Stop.ALONG_PATH)
         return None
 
     def speed(self, arm: str) -> FloatArray:
@@ -97,10 +102,10 @@ class StateWatch:
 
     def _delay_problem(self, sample: Sample, now: Instant) -> str:
         delay = now.time - sample.taken
-        if abs(delay) <= self._limits.state_delay:
+        if abs(delay) <= self.limits.state_delay:
             return ""
         side = "before" if delay > 0.0 else "after"
-        return f"joint states are stamped {abs(delay):.2f} s {side} they arrive, limit {self._limits.state_delay} s"
+        return f"joint states are stamped {abs(delay):.2f} s {side} they arrive, limit {self.limits.state_delay} s"
 
 
 def sample_problem(sample: Sample, ranges: dict[str, JointRange]) -> str:

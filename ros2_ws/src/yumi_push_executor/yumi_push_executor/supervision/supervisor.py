@@ -63,6 +63,7 @@ class Supervisor:
         self._settling: Settling | None = None
         self._since = Instant(0.0, 0.0)  # start of the stage WAITING
         self._last = Instant(0.0, 0.0)
+        self._hiccup = False  # this process did not run for a while before the present step
         self._orders: list[Order] = []
         self._outcome: Outcome | None = None
 
@@ -136,9 +137,15 @@ class Supervisor:
         return (
             self._motion_fault(driver, now)
             or self._blind_fault(now)
-            or self._watch.fault(now)
+            or self._state_fault(now)
             or gripper_fault(driver, self._running.segment.arm)
         )
+
+    def _state_fault(self, now: Instant) -> Fault | None:
+        """States that seem old just after this process was held up may be waiting to be read: judge at the next step."""
+        hiccup = min(now.time - self._last.time, now.wall - self._last.wall) > 0.5 * self._limits.state_age
+        self._hiccup = hiccup and not self._hiccup
+        return None if self._hiccup else self._watch.fault(now)
 
     def _motion_fault(self, driver: DriverStatus | None, now: Instant) -> Fault | None:
         if self._stage is _Stage.LIFTING and may_lift(driver, self._limits, now):

@@ -18,9 +18,10 @@ _STILL = 0.1  # share of the commanded movement below which an arm counts as not
 class FollowingWatch:
     """Compares measured positions with the command.
 
-    A controller starts a trajectory some time after it was sent and follows it some time behind. So a measured position
-    is compared with the piece of the command that lies between now and the longest allowed lag before: the error is its
-    distance to the nearest point of that piece. The latency of the start is learned when the arm is first seen to move.
+    A controller starts a trajectory some time after it was sent and follows it some time behind, and its stamps come
+    from another clock. So a measured position is compared with a piece of the command: from the allowed skew ahead
+    of now to the longest allowed lag behind. The error is its distance to the nearest point of that piece. The latency
+    of the start is learned when the arm is first seen to move.
 
     Args:
         arm: ``left`` or ``right``, for the texts.
@@ -35,6 +36,7 @@ class FollowingWatch:
         self._arm = arm
         self._limits = limits
         self._latency: float | None = None
+        self._behind = 0.0  # s between now and the point of the command that the last position matched best
         self._seen: deque[tuple[float, FloatArray]] = deque()
         self._visible = _first_movement(trajectory)
 
@@ -46,6 +48,10 @@ class FollowingWatch:
     def elapsed(self, time: float) -> float:
         """Time on the trajectory that the controller should have reached at ``time`` [s]."""
         return time - self.sent - (self._latency or 0.0)
+
+    def matched(self, time: float) -> float:
+        """Time on the trajectory where the arm is at ``time``, by its last measured position [s]."""
+        return time - self.sent - self._behind
 
     def check(self, taken: float, positions: FloatArray) -> Fault | None:
         """Judge one measured position, (7,) rad."""
@@ -93,7 +99,8 @@ class FollowingWatch:
         if self._latency is None and self._visible is not None:
             moved = float(np.abs(positions - self.trajectory.start).max())
             if moved > _NOTICED:
-                self._latency = min(max(0.0, taken - self.sent - self._visible), self._limits.start_latency)
+                seen = taken - self.sent - self._visible
+                self._latency = min(max(seen, -self._limits.clock_skew), self._limits.start_latency)
 
     def _overdue(self, taken: float) -> bool:
         if self._visible is None or self._latency is not None:
@@ -102,12 +109,13 @@ class FollowingWatch:
 
     def _error(self, taken: float, positions: FloatArray) -> FloatArray:
         """(7,) distance to the nearest allowed point of the command, each joint [rad]."""
-        newest = self.elapsed(taken)
-        span = self._limits.lag + (self._limits.start_latency if self._latency is None else 0.0)
-        count = int(np.ceil(span / _GRID)) + 1
-        commands, _ = self.trajectory.sample(newest - np.linspace(0.0, span, count))
+        latency = self._limits.start_latency if self._latency is None else max(self._latency, 0.0)
+        behind = np.arange(-self._limits.clock_skew, latency + self._limits.lag + _GRID, _GRID)
+        commands, _ = self.trajectory.sample(taken - self.sent - behind)
         errors = np.abs(commands - positions)
-        return np.asarray(errors[errors.max(axis=1).argmin()])
+        best = int(errors.max(axis=1).argmin())
+        self._behind = float(behind[best])
+        return np.asarray(errors[best])
 
     def _frozen(self, taken: float) -> Fault | None:
         """Encoders of a moving arm are never this still: the numbers are frozen, the arm may be moving."""

@@ -1,0 +1,271 @@
+"""Lifecycle node: a push becomes a supervised motion of a YuMi.
+
+In: ``execute_push`` (action), ``push`` (only with the parameter ``auto_execute``), ``objects``, ``joint_states``,
+``driver_state``. Out: ``<arm>_arm_controller/joint_trajectory``, ``<arm>_gripper_controller/commands``,
+``last_outcome`` (singulation_msgs/PushOutcome, latched), ``/diagnostics``. The service ``halt`` holds both arms at any
+time; it is no emergency stop.
+
+Every goal is accepted and gets a result with a code; one that comes while another is executed is aborted with BUSY.
+A goal whose client is gone is finished all the same. Nothing that was stopped goes on by itself.
+"""
+
+import sys
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sensor_msgs.msg import JointState
+from singulation_msgs.action import ExecutePush
+from singulation_msgs.msg import Arrangement, DriverState, PushOutcome, PushTrajectory
+from std_srvs.srv import Trigger
+
+from singulation_core import InvalidInputError, Push, ResultCode, SingulationError
+from singulation_core.conversions import arrangement_from_msg, push_from_msg, seconds_of
+from singulation_node.guard import guarded, guarded_service, report_failure
+from singulation_node.main import run_node
+from singulation_node.managed_node import ManagedNode
+from singulation_node.qos import LATCHED, STATE
+from yumi_push_executor.controllers import Controllers
+from yumi_push_executor.executor_settings import ExecutorSettings
+from yumi_push_executor.goal_ledger import GoalLedger
+from yumi_push_executor.kinematics.model import ARMS
+from yumi_push_executor.outcome_messages import feedback_of, outcome_of, result_of
+from yumi_push_executor.push_execution import Ending, Outside, PushExecution
+from yumi_push_executor.push_gate import PushGate, Stamp
+from yumi_push_executor.push_planner import PushPlanner
+from yumi_push_executor.robot_view import RobotView
+from yumi_push_executor.supervision import Instant, Step, hold_arm
+from yumi_push_executor.wire_messages import driver_status_from_msg
+
+_REPORT_PERIOD = 1.0  # s
+_FEEDBACK_PERIOD = 0.05  # s
+_SETTLE = 0.5  # s beyond stop_timeout that a halt or a deactivation waits for
+_LOG_PERIOD = 5.0  # s between log lines about refused messages
+
+
+class ExecutorNode(ManagedNode[ExecutorSettings]):
+    """See the module."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("executor_node", ExecutorSettings, **options)
+        self.ledger = GoalLedger()
+        self._simulated = bool(self.get_parameter("use_sim_time").value)
+        self._execution: PushExecution | None = None
+
+    def configure(self) -> None:
+        """Load the robot model, listen to the robot, offer the action and ``halt``."""
+        settings = self.settings
+        planner = self._warm_planner()
+        self._view = RobotView(settings.joint_names, planner.ranges, settings.limits, self.instant)
+        self._gate = PushGate(settings.max_push_age, settings.max_push_skew, settings.need_objects)
+        self._controllers = Controllers(self, settings.joint_names)
+        outside = Outside(self._controllers.send, self.instant, self.ros_time, self._controllers.require)
+        self._execution = PushExecution(self._view, self._gate, planner, outside)
+        self._last_outcome = self.create_publisher(PushOutcome, "last_outcome", LATCHED)
+        states, rest = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        self.create_subscription(JointState, "joint_states", self._take_states, STATE, callback_group=states)
+        self.create_subscription(DriverState, "driver_state", self._take_driver, STATE, callback_group=states)
+        self.create_subscription(Arrangement, "objects", self._take_objects, STATE, callback_group=rest)
+        self.create_service(Trigger, "halt", self._halt, callback_group=ReentrantCallbackGroup())
+        self.create_timer(_REPORT_PERIOD, self._report, callback_group=rest)
+        self._open_action(settings.result_timeout)
+
+    def activate(self) -> None:
+        """Begin to take pushes."""
+        self.create_subscription(PushTrajectory, "push", self._take_push, STATE)
+
+    def deactivate(self) -> None:
+        """Stop what moves."""
+        execution = self._execution
+        if execution is None or not execution.halt("the node was deactivated"):
+            return
+        if not execution.idle.wait(self.settings.stop_timeout + _SETTLE):
+            execution.abandon()
+            execution.idle.wait(_SETTLE)
+
+    def cleanup(self) -> None:
+        """Close the action."""
+        self._server.destroy()
+        self._client.destroy()
+        self._execution = None
+
+    def make_planner(self) -> PushPlanner:
+        """The planner of motions."""
+        return PushPlanner(self.settings)
+
+    def instant(self) -> Instant:
+        """The present: motions are timed by the clock of the states, which is the steady clock unless it is simulated.
+
+        The system's clock may step; neither the steady clock nor a simulation's does.
+        """
+        wall = time.monotonic()
+        return Instant(self.ros_time() if self._simulated else wall, wall)
+
+    def ros_time(self) -> float:
+        """The clock of the stamps [s]."""
+        return float(self.get_clock().now().nanoseconds) * 1e-9
+
+    def _warm_planner(self) -> PushPlanner:
+        started = time.monotonic()
+        self.get_logger().info("warming up; the first time ever this compiles and takes up to half a minute")
+        planner = self.make_planner()
+        planner.warm_up()
+        self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")
+        return planner
+
+    def _open_action(self, result_timeout: float) -> None:
+        self._server = ActionServer(
+            self,
+            ExecutePush,
+            "execute_push",
+            self._execute,
+            callback_group=ReentrantCallbackGroup(),
+            goal_callback=lambda request: GoalResponse.ACCEPT,
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+            result_timeout=round(result_timeout),
+        )
+        self._client = ActionClient(self, ExecutePush, "execute_push", callback_group=ReentrantCallbackGroup())
+
+    def _execute(self, goal: Any) -> Any:
+        """One goal, one result. Runs in a thread of the executor."""
+        self.ledger.receive()
+        try:
+            ending = self._ending_of(goal)
+        except Exception as error:  # a defect between here and the library; a raise would send an empty result
+            report_failure(self, "execute_push", error)
+            ending = Ending.failed(ResultCode.INTERNAL, f"{type(error).__name__}: {error}")
+        if ending.defect is not None:
+            report_failure(self, "execute_push", ending.defect)
+        self.ledger.end(ending.code)
+        if ending.code is not ResultCode.BUSY:
+            self._last_outcome.publish(outcome_of(ending, goal.request.push, self.get_clock().now().to_msg()))
+        self._log(ending)
+        _close(goal, ending.code)
+        return result_of(ending)
+
+    def _ending_of(self, goal: Any) -> Ending:
+        execution = self._execution
+        if execution is None or not self.is_active:
+            return Ending.failed(ResultCode.NOT_READY, "the node is not active")
+        last = [-1, 0.0]
+
+        def on_step(step: Step) -> None:
+            now = time.monotonic()
+            if step.phase != last[0] or now - last[1] >= _FEEDBACK_PERIOD:
+                last[:] = step.phase, now
+                goal.publish_feedback(feedback_of(step))
+
+        message = goal.request.push
+        return execution.execute(
+            lambda: self._read(message), self.settings.limits, lambda: bool(goal.is_cancel_requested), on_step
+        )
+
+    def _read(self, message: PushTrajectory) -> tuple[Push, Stamp]:
+        frame = message.header.frame_id
+        if frame != self.settings.table_frame:
+            raise InvalidInputError(f"push: frame {frame!r}, need {self.settings.table_frame!r}")
+        return push_from_msg(message), (message.header.stamp.sec, message.header.stamp.nanosec)
+
+    @guarded
+    def _take_states(self, message: JointState) -> None:
+        delay = self.ros_time() - seconds_of(message.header.stamp)
+        try:
+            self._view.add_states(message.name, message.position, message.velocity, delay)
+        except SingulationError as error:
+            self._refused("joint_states", error)
+
+    @guarded
+    def _take_driver(self, message: DriverState) -> None:
+        try:
+            self._view.add_driver(driver_status_from_msg(message, self.instant()))
+        except SingulationError as error:
+            self._refused("driver_state", error)
+
+    @guarded
+    def _take_objects(self, message: Arrangement) -> None:
+        try:
+            if message.header.frame_id != self.settings.table_frame:
+                raise InvalidInputError(f"frame {message.header.frame_id!r}, need {self.settings.table_frame!r}")
+            stamp = message.header.stamp
+            self._gate.add((stamp.sec, stamp.nanosec), arrangement_from_msg(message))
+        except SingulationError as error:
+            self._refused("objects", error)
+        else:
+            self.diagnostics.report("objects", True, f"{len(message.objects)} objects")
+
+    @guarded
+    def _take_push(self, message: PushTrajectory) -> None:
+        """Ask the own action for it, so that there is one way to execute a push."""
+        if not self.settings.auto_execute:
+            return
+        if self._client.server_is_ready():
+            self._client.send_goal_async(ExecutePush.Goal(push=message))
+        else:
+            self.get_logger().warning("a push came before the action was ready; it is not executed")
+
+    @guarded_service
+    def _halt(self, request: Any, response: Any) -> Any:
+        execution = self._execution
+        if execution is not None and execution.halt("the halt service was called"):
+            stopped = execution.idle.wait(self.settings.stop_timeout + _SETTLE)
+            response.success = stopped
+            response.message = "the push was stopped" if stopped else "ordered to stop; standstill not seen yet"
+            return response
+        with self._view.lock:
+            orders = [hold_arm(arm, self._view.watch, self.settings.limits) for arm in ARMS]
+        for order in orders:
+            self._controllers.send(order)
+        response.success = True
+        response.message = "nothing was being executed; both arms are held where they are"
+        return response
+
+    @guarded
+    def _report(self) -> None:
+        with self._view.lock:
+            fault, refused, driver = self._view.watch.fault(self.instant()), self._view.watch.refused, self._view.driver
+            messages = self._view.messages
+        text = "joint states are good" if fault is None else fault.text
+        self.diagnostics.report("joint states", fault is None, text, messages=messages, refused=refused)
+        name = "no driver state has come yet" if driver is None else f"{driver.mode.name}: {driver.message}"
+        moves = driver is not None and driver.motion_enabled
+        self.diagnostics.report("driver", moves, name)
+        counts = self.ledger.counts()
+        defects = self.ledger.ended(ResultCode.INTERNAL)
+        self.diagnostics.report("goals", defects == 0, f"{counts['received']} received", **counts)
+        problems = self._controllers.problems()
+        self.diagnostics.report("controllers", not problems, "; ".join(problems) or "connected")
+
+    def _refused(self, topic: str, error: SingulationError) -> None:
+        self.diagnostics.report(topic, False, error.message)
+        self.get_logger().warning(f"{topic}: {error}", throttle_duration_sec=_LOG_PERIOD)
+
+    def _log(self, ending: Ending) -> None:
+        text = f"push ended with {ending.code.name}: {ending.text} (planned in {1e3 * ending.planning_time:.0f} ms)"
+        self.diagnostics.report(
+            "last push", ending.code is ResultCode.OK, ending.text, code=ending.code.name, planning=ending.planning_time
+        )
+        if ending.code is ResultCode.OK:
+            self.get_logger().info(text)
+        else:
+            self.get_logger().warning(text)
+
+
+def _close(goal: Any, code: ResultCode) -> None:
+    """The action's own status for a code."""
+    if code is ResultCode.OK:
+        goal.succeed()
+    elif code is ResultCode.CANCELLED:
+        goal.canceled()
+    else:
+        goal.abort()
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node."""
+    return run_node(ExecutorNode, args, threads=6)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
