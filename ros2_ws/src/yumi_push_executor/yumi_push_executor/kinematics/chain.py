@@ -195,10 +195,39 @@ def tip_way(chain: Chain, start: FloatArray, end: FloatArray, offset: float, sam
     for sample in range(samples + 1):
         pose = forward(chain, start + way * (sample / samples), jacobian)
         twist = jacobian @ way
-        lever = offset * pose[:3, 2]
-        velocity = twist[:3] + np.cross(twist[3:], lever)
+        velocity = twist[:3] + np.cross(twist[3:], offset * pose[:3, 2])
         largest = max(largest, np.sqrt((velocity**2).sum()))
     return largest
+
+
+@njit(cache=True)
+def skeleton(chain: Chain, q: FloatArray, offset: float) -> FloatArray:
+    """(8, 3) origins of the seven joints and the tip, ``offset`` below ``tool0``, in the base frame [m]."""
+    pose = np.eye(4)
+    points = np.empty((8, 3))
+    for k in range(7):
+        _attach(pose, chain.rotations[k], chain.translations[k])
+        points[k] = pose[:3, 3]
+        cosine, sine = np.cos(q[k]), np.sin(q[k])
+        for i in range(3):
+            x, y = pose[i, 0], pose[i, 1]
+            pose[i, 0] = cosine * x + sine * y
+            pose[i, 1] = cosine * y - sine * x
+    _attach(pose, chain.tool, chain.tool[:3, 3])
+    points[7] = pose[:3, 3] + offset * pose[:3, 2]
+    return points
+
+
+@njit(cache=True)
+def longest_step(chain: Chain, postures: FloatArray, offset: float) -> float:
+    """Furthest that any joint or the tip moves between two of (n, 7) neighbouring postures [m]."""
+    before = skeleton(chain, postures[0], offset)
+    longest = 0.0
+    for k in range(1, len(postures)):
+        after = skeleton(chain, postures[k], offset)
+        longest = max(longest, np.sqrt(((after - before) ** 2).sum(axis=1)).max())
+        before = after
+    return longest
 
 
 @njit(cache=True)

@@ -14,8 +14,10 @@ from yumi_push_executor.motion.timing import backwards, joined, joint_move
 from yumi_push_executor.supervision.segment import Phase, Segment
 from yumi_push_executor.supervision.trajectory import Trajectory
 
-_STEP = 0.008  # [m] that any part of the arm moves at most between two checked postures
-_ELBOW = 0.35  # [m] from the shoulder: what a turning joint moves even when the tips stand still
+# Largest way of any joint and of the tips between two checked postures [m]. The velocity along a rigid link lies
+# between those of its ends, so between them nothing comes nearer than half of it below the margin.
+_STEP = 0.008
+_COARSE = 25
 _EXTRA_RISE = (0.0, 0.05, 0.1)  # [m] above the travel height, tried in turn
 _NEAR_TABLE = 0.10  # [m] beside the workspace: a low arm within it rises before it travels
 
@@ -130,8 +132,9 @@ class Completion:
         return [joint_move(self._arm, a, b, self._parameters) for a, b in pairwise(postures)]
 
     def _between(self, start: FloatArray, end: FloatArray) -> FloatArray:
-        way = max(self._arm.tip_way(start, end), _ELBOW * float(np.abs(end - start)[:4].max()))
-        return np.linspace(start, end, int(np.ceil(way / _STEP)) + 1)
+        coarse = np.linspace(start, end, _COARSE)
+        step = chain.longest_step(self._arm.chain, coarse, TIP_OFFSET)
+        return np.linspace(start, end, int(np.ceil(step * (_COARSE - 1) / _STEP)) + 1)
 
     def _along(self, trajectory: Trajectory) -> FloatArray:
         """Postures of a straight line, close enough together."""

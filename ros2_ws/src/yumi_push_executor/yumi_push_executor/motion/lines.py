@@ -1,6 +1,7 @@
 """The straight parts of a push on one branch of one arm: down, push, up."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,27 +37,33 @@ class Lines:
     push: Trajectory
     up: Trajectory
 
-    def turned(self, heading: float, margin: float) -> "list[Lines]":
-        """The same lines at another heading, once for every turn of the last joint within its limits less ``margin`` [rad].
+    @cached_property
+    def positions(self) -> FloatArray:
+        """(n, 7) way-points of all three [rad]."""
+        return np.concatenate((self.down.positions, self.push.positions, self.up.positions))
 
-        The last joint's axis is the tool's: turning it turns the jaws and moves nothing else.
+    def turns(self, heading: float, margin: float) -> FloatArray:
+        """(k,) angles by which the last joint may turn to bring the jaws to a heading [rad].
+
+        The last joint's axis is the tool's: turning it turns the jaws and moves nothing else. More than one whole turn
+        fits into its limits less ``margin`` [rad].
         """
-        last = np.concatenate([part.positions[:, 6] for part in (self.down, self.push, self.up)])
-        turn = self.heading - heading
+        last, turn = self.positions[:, 6], self.heading - heading
         lowest = np.ceil((self.arm.lower[6] + margin - last.min() - turn) / (2.0 * np.pi))
         highest = np.floor((self.arm.upper[6] - margin - last.max() - turn) / (2.0 * np.pi))
-        turns = turn + 2.0 * np.pi * np.arange(lowest, highest + 1.0)
-        return [self._turned(heading, float(by)) for by in turns]
+        return np.asarray(turn + 2.0 * np.pi * np.arange(lowest, highest + 1.0))
 
-    def _turned(self, heading: float, by: float) -> "Lines":
-        down, push, up = (_turned(part, by) for part in (self.down, self.push, self.up))
-        return replace(self, heading=heading, down=down, push=push, up=up)
+    def turned(self, turn: float) -> "Lines":
+        """The same lines with the last joint turned [rad]."""
+        down, push, up = (_turned(part, turn) for part in (self.down, self.push, self.up))
+        return Lines(self.arm, self.branch, self.heading - turn, down, push, up)
 
-    @property
-    def limit_margin(self) -> tuple[float, int]:
+    def room(self, turn: float = 0.0) -> tuple[float, int]:
         """Smallest distance of any joint to its limits [rad], and which joint (1..7 from the shoulder)."""
-        positions = np.concatenate((self.down.positions, self.push.positions, self.up.positions))
-        room = np.minimum(positions - self.arm.lower, self.arm.upper - positions).min(axis=0)
+        lowest, highest = self.positions.min(axis=0), self.positions.max(axis=0)
+        lowest[6] += turn
+        highest[6] += turn
+        room = np.minimum(lowest - self.arm.lower, self.arm.upper - highest)
         return float(room.min()), int(room.argmin()) + 1
 
 

@@ -58,7 +58,8 @@ def plan_motion(
     candidates = ranked(solved, headings(push), postures, parameters)
     touched = swept_blocks(push, arrangement, pusher)
     checkers: dict[str, Checker] = {}
-    for tried, lines in enumerate(candidates[:_MOST_TRIED], start=1):
+    for tried, candidate in enumerate(candidates[:_MOST_TRIED], start=1):
+        lines = candidate.lines.turned(candidate.turn)
         name = lines.arm.name
         if name not in checkers:
             scene = build_scene(name, cell, arrangement, touched, push.end - push.start, parameters.unknown_height)
@@ -68,7 +69,7 @@ def plan_motion(
         except SingulationError as refusal:
             refusals.append(refusal)
             continue
-        margin = lines.limit_margin[0]
+        margin = lines.room()[0]
         return Motion(push, name, segments, width, lines.heading, lines.branch, margin, (len(candidates), tried))
     raise _most_telling(refusals, len(candidates))
 
