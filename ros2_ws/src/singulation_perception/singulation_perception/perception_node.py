@@ -19,6 +19,7 @@ from visualization_msgs.msg import MarkerArray
 from singulation_core import ResultCode, SingulationError
 from singulation_core.conversions import arrangement_to_msg
 from singulation_node.guard import guarded
+from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import SENSOR_IN, STATE
@@ -162,6 +163,7 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point."""
+    prepare_for_large_messages()
     return run_node(PerceptionNode, args)
 
 

@@ -25,6 +25,7 @@ from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, ResultCode, SingulationError
 from singulation_node.guard import guarded, guarded_service
+from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import plain_arguments
 from singulation_perception.cloud_messages import cloud_message
 from singulation_perception.clouds import RecordedCloud
@@ -178,6 +179,7 @@ def main(args: Sequence[str] | None = None) -> int:
         signal.signal(number, lambda *_: stop.set())
     try:
         recording = find_recording(options.paths, options.topic, options.period)
+        prepare_for_large_messages()
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
         node = ReplayNode(options, stop)
         with _spinning(node):
