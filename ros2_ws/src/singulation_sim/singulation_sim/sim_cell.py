@@ -19,6 +19,7 @@ from trajectory_msgs.msg import JointTrajectory
 from singulation_core import ResultCode, SingulationError
 from singulation_node.diagnostics import Diagnostics
 from singulation_node.guard import guarded, guarded_service, report_failure
+from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import plain_arguments, run_node
 from singulation_node.parameters import ParameterSet
 from singulation_node.qos import COMMAND
@@ -38,9 +39,9 @@ class SimCell(Node):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("sim_cell", **options)
-        self._parameters: ParameterSet[SimSettings] = ParameterSet(self, SimSettings)
+        self._settings: ParameterSet[SimSettings] = ParameterSet(self, SimSettings)
         self.diagnostics = Diagnostics(self)
-        settings = self._parameters.current
+        settings = self._settings.current
         self.cell = settings.new_cell(_OWN_START if settings.own_time else time.time())
         self._scene_key = settings.scene_key
         self._lock = threading.Condition()
@@ -135,7 +136,7 @@ class SimCell(Node):
         Raises:
             SingulationError: ``TIMEOUT`` if simulated time does not get on, or the node ends.
         """
-        settings = self._parameters.current
+        settings = self._settings.current
         patience = 5.0 + _PATIENCE * settings.scan_time / settings.speed
         with self._camera_lock:
             with self._lock:
@@ -160,7 +161,7 @@ class SimCell(Node):
             report_failure(self, "publishing", error)
 
     def _change_scene(self) -> None:
-        settings = self._parameters.current
+        settings = self._settings.current
         if settings.scene_key != self._scene_key:
             self._scene_key = settings.scene_key
             scene = random_scene(settings.scene, settings.objects, settings.seed, settings.geometry)
@@ -185,6 +186,7 @@ def _options(arguments: Sequence[str]) -> list[Any]:
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node until it is told to end."""
     overrides = _options(plain_arguments(args))
+    prepare_for_large_messages()
     return run_node(lambda: SimCell(parameter_overrides=overrides), args)
 
 
