@@ -1,23 +1,48 @@
-"""Recording messages into a rosbag2 (mcap) on machines with or without ROS's own recorder."""
+"""Recording messages into a rosbag2 (mcap, chunks compressed with zstd), with or without ROS's own recorder."""
 
+import queue
 import threading
 import weakref
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from rclpy.serialization import serialize_message
 from rosbags.interfaces import Connection
-from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
 from singulation_core import ResultCode, SingulationError
 from singulation_perception.bag_types import register_type, typestore
+
+_WAITING = 8  # messages; of the largest clouds these are 300 MB
+_PATIENCE = 30.0  # s for the disk to take one of them
+_CLOSING = 120.0  # s for the disk to take the rest
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    topic: str
+    kind: str
+    stamp: int
+    raw: bytes
+
+
+@dataclass(slots=True)
+class _Tape:
+    """What the writing thread works on; knows nothing of the recorder, so that a forgotten recorder still ends."""
+
+    path: Path
+    writer: Writer
+    entries: "queue.Queue[_Entry | None]" = field(default_factory=lambda: queue.Queue(_WAITING))
+    failure: SingulationError | None = None
 
 
 class BagRecorder:
     """Writes messages of any installed type; for use in a ``with`` block, from several threads.
 
-    However the block ends (error, Ctrl-C, end of the interpreter), what was written so far is a complete, indexed bag.
+    However the block ends (error, Ctrl-C, end of the interpreter), what was written so far is a complete, indexed bag:
+    a thread of its own writes, which no signal interrupts.
 
     Args:
         path: folder of the bag; must not exist yet.
@@ -29,17 +54,12 @@ class BagRecorder:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.count = 0
+        self._kinds: dict[str, str] = {}
         self._lock = threading.Lock()
-        self._connections: dict[str, tuple[str, Connection]] = {}
-        self._writer = Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) if not path.exists() else None
-        if self._writer is None:
-            raise SingulationError(ResultCode.BAD_FILE, f"{path}: exists already; a recording is never overwritten")
-        try:
-            self._writer.open()
-        except OSError as error:
-            raise SingulationError(ResultCode.BAD_FILE, f"{path}: cannot record there: {error}") from None
-        # Also when nobody leaves the ``with`` block any more: a bag without its index is hard to read.
-        self._finish = weakref.finalize(self, _close, self._writer)
+        self._tape = _Tape(path, _open(path))
+        self._thread = threading.Thread(target=_record, args=(self._tape,), name="bag recorder", daemon=True)
+        self._thread.start()
+        self._finish = weakref.finalize(self, _end, self._tape, self._thread)
 
     def write(self, topic: str, message: Any, stamp: int) -> None:
         """Append a message.
@@ -51,23 +71,31 @@ class BagRecorder:
 
         Raises:
             SingulationError: ``INVALID_INPUT`` for another type than before on this topic or one that is not
-                installed; ``BAD_FILE`` if the disk does not take it; ``REJECTED`` after ``close``.
+                installed; ``BAD_FILE`` if the disk does not take what came before; ``REJECTED`` after ``close``.
         """
+        kind = type_name(message)
         raw = serialize_message(message)
         with self._lock:
-            if not self._finish.alive or self._writer is None:
-                raise SingulationError(ResultCode.REJECTED, f"{self.path}: the recording is closed")
-            connection = self._connection(topic, type_name(message))
+            self._require_open()
+            self._require_type(topic, kind)
             try:
-                self._writer.write(connection, stamp, raw)
-            except OSError as error:
-                raise SingulationError(ResultCode.BAD_FILE, f"{self.path}: cannot write: {error}") from None
+                self._tape.entries.put(_Entry(topic, kind, stamp, raw), timeout=_PATIENCE)
+            except queue.Full:
+                raise SingulationError(
+                    ResultCode.BAD_FILE, f"{self.path}: nothing could be written for {_PATIENCE:.0f} s"
+                ) from None
             self.count += 1
 
     def close(self) -> None:
-        """Complete the bag; further calls do nothing."""
+        """Complete the bag; further calls do nothing.
+
+        Raises:
+            SingulationError: ``BAD_FILE`` if the disk did not take all of it.
+        """
         with self._lock:
             self._finish()
+        if self._tape.failure is not None:
+            raise self._tape.failure
 
     def __enter__(self) -> "BagRecorder":
         return self
@@ -77,18 +105,20 @@ class BagRecorder:
     ) -> None:
         self.close()
 
-    def _connection(self, topic: str, kind: str) -> Connection:
-        known = self._connections.get(topic)
-        if known is None:
+    def _require_open(self) -> None:
+        if self._tape.failure is not None:
+            raise self._tape.failure
+        if not self._finish.alive:
+            raise SingulationError(ResultCode.REJECTED, f"{self.path}: the recording is closed")
+
+    def _require_type(self, topic: str, kind: str) -> None:
+        if topic not in self._kinds:
             register_type(kind)
-            assert self._writer is not None
-            known = (kind, self._writer.add_connection(topic, kind, typestore=typestore()))
-            self._connections[topic] = known
-        if known[0] != kind:
+            self._kinds[topic] = kind
+        if self._kinds[topic] != kind:
             raise SingulationError(
-                ResultCode.INVALID_INPUT, f"topic {topic} carries {known[0]} in {self.path}, not {kind}"
+                ResultCode.INVALID_INPUT, f"topic {topic} carries {self._kinds[topic]} in {self.path}, not {kind}"
             )
-        return known[1]
 
 
 def type_name(message: Any) -> str:
@@ -97,5 +127,43 @@ def type_name(message: Any) -> str:
     return f"{package}/{kind}/{type(message).__name__}"
 
 
-def _close(writer: Writer) -> None:
-    writer.close()
+def _open(path: Path) -> Writer:
+    if path.exists():
+        raise SingulationError(ResultCode.BAD_FILE, f"{path}: exists already; a recording is never overwritten")
+    writer = Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    try:
+        writer.open()
+    except OSError as error:
+        raise SingulationError(ResultCode.BAD_FILE, f"{path}: cannot record there: {error}") from None
+    return writer
+
+
+def _record(tape: _Tape) -> None:
+    """The writing thread: entries until None; after a failure they are only taken, so that nobody waits for room."""
+    connections: dict[str, Connection] = {}
+    while (entry := tape.entries.get()) is not None:  # unbounded on purpose: ended by _end
+        if tape.failure is None:
+            _guarded(tape, _write, tape.writer, connections, entry)
+    _guarded(tape, tape.writer.close)
+
+
+def _write(writer: Writer, connections: dict[str, Connection], entry: _Entry) -> None:
+    if entry.topic not in connections:
+        connections[entry.topic] = writer.add_connection(entry.topic, entry.kind, typestore=typestore())
+    writer.write(connections[entry.topic], entry.stamp, entry.raw)
+
+
+def _guarded(tape: _Tape, step: Any, *arguments: Any) -> None:
+    try:
+        step(*arguments)
+    except Exception as error:
+        text = f"{tape.path}: cannot write: {type(error).__name__}: {error}"
+        tape.failure = tape.failure or SingulationError(ResultCode.BAD_FILE, text)
+
+
+def _end(tape: _Tape, thread: threading.Thread) -> None:
+    tape.entries.put(None, timeout=_CLOSING)
+    thread.join(_CLOSING)
+    if thread.is_alive() and tape.failure is None:
+        tape.failure = SingulationError(ResultCode.BAD_FILE, f"{tape.path}: not complete after {_CLOSING:.0f} s")
