@@ -12,11 +12,12 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_planner.candidates import Candidates, through_centroid
-from singulation_planner.directions import away, comparable, fan
+from singulation_planner.directions import away, fan
 from singulation_planner.kernels import scoring
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.policy import Task, policy
 from singulation_planner.scene import Scene
+from singulation_planner.selection import ascending, by_connectivity
 
 _CLUSTERING = {
     "seed_disc": scoring.FIXED_DISC,
@@ -60,8 +61,7 @@ class Options:
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
     """Objects by connectivity score; for each the partners of case 1, then the 16 directions of case 2."""
     scene = task.scene
-    scores = scoring.distance_sums(scene.centroids, False)
-    for index in np.argsort(comparable(scores, scene.scale), kind="stable").tolist():
+    for index in by_connectivity(scene):
         labels = scoring.cluster(scene.centroids, scene.radii, index, _CLUSTERING[options.clustering])
         if _pushes_two(labels, options):
             yield through_centroid(index, _towards_partners(scene, index, labels, options))
@@ -91,7 +91,7 @@ def _towards_partners(scene: Scene, index: int, labels: IntArray, options: Optio
     else:
         others = relative if options.case_one_direction == "away_from_all" else relative[labels == 0]
         scores = directions @ others.sum(axis=0) - lengths  # without the partner itself
-    return directions[np.argsort(comparable(scores, scene.scale), kind="stable")]
+    return directions[ascending(scores, scene.scale)]
 
 
 def _single_directions(scene: Scene, index: int, labels: IntArray, options: Options) -> FloatArray:
@@ -104,4 +104,4 @@ def _single_directions(scene: Scene, index: int, labels: IntArray, options: Opti
         centres = [scene.centroids[labels == k].mean(axis=0) for k in range(1, int(labels.max()) + 1)]
         points = np.array([scene.centroids[index], *centres])
         sums = scoring.path_distance_sums(points, np.zeros(len(points)), 0, directions, path, 0.0)
-    return directions[np.argsort(comparable(sums, scene.scale), kind="stable")]
+    return directions[ascending(sums, scene.scale)]
