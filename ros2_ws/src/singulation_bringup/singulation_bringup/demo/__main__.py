@@ -23,7 +23,7 @@ from singulation_node.domain import reserved_domain
 from singulation_perception.playback import Recording, find_recording
 
 _OWN_BAG = Path("share", "recordings", "sim_cell")
-_WRONG_INPUT = (ResultCode.BAD_FILE, ResultCode.INVALID_INPUT, ResultCode.BUSY)
+_WRONG_INPUT = (ResultCode.BAD_FILE, ResultCode.INVALID_INPUT, ResultCode.BUSY, ResultCode.UNKNOWN_POLICY)
 EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 
 

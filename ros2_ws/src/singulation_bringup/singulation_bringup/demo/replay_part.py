@@ -16,7 +16,7 @@ from singulation_bringup.demo.processes import NodeProcesses
 from singulation_bringup.demo.summary import Summary, object_entry, push_entry
 from singulation_bringup.demo.terminal import say
 from singulation_bringup.drawing import picture_of_frame
-from singulation_core import Arrangement, Push, ResultCode, conversions
+from singulation_core import Arrangement, Push, ResultCode, SingulationError, conversions
 from singulation_perception.playback import Recording
 
 _START = 120.0  # s; the first start on a machine compiles the segmentation
@@ -116,6 +116,8 @@ def _plan(observer: Observer, message: Any, options: DemoOptions) -> tuple[Push 
     )
     answer = observer.call(PlanPush, "plan_push", request)
     code = ResultCode(answer.code)
+    if code is ResultCode.UNKNOWN_POLICY:  # no cloud will change that
+        raise SingulationError(code, answer.message)
     return (conversions.push_from_msg(answer.push) if code is ResultCode.OK else None), code, answer.message
 
 
