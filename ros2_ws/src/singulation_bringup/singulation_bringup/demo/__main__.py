@@ -20,6 +20,7 @@ from singulation_bringup.demo.summary import Summary
 from singulation_bringup.demo.terminal import complain, say
 from singulation_core import ResultCode, SingulationError
 from singulation_node.domain import reserved_domain
+from singulation_node.large_messages import prepare_for_large_messages
 from singulation_perception.playback import Recording, find_recording
 
 _OWN_BAG = Path("share", "recordings", "sim_cell")
@@ -39,6 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             recording = find_recording(paths, options.topic, 1.0) if options.part != "cell" else None
             _require_screen(options)
             _make_folder(options.out)
+            prepare_for_large_messages()
             return _run(options, paths, recording)
     except SingulationError as error:
         complain(str(error))

@@ -70,9 +70,9 @@ class CellPart:
         with BagRecorder(self._options.out / "run") as recorder:
             self._summary.files.append("run")
             self._listen(observer, recorder)
-            with self._summary.timed("cell start"):
-                self._start(processes, observer)
             try:
+                with self._summary.timed("cell start"):
+                    self._start(processes, observer)
                 with self._summary.timed("cell loop"):
                     result = self._singulate(observer)
             finally:

@@ -1,6 +1,7 @@
 """The nodes of a demo as processes that never outlive it."""
 
 import os
+import re
 import signal
 import subprocess
 import time
@@ -58,15 +59,12 @@ class NodeProcesses:
         """Raise if one has ended although nobody stopped it.
 
         Raises:
-            SingulationError: ``INTERNAL`` with the end of its log.
+            SingulationError: with the code and text the process itself gave (``error: NAME (number): text``), else
+                ``INTERNAL`` with the end of its log.
         """
         for name, process in self._running:
             if process.poll() not in (None, 0):
-                log = self._logs / f"{name}.log"
-                tail = "\n  ".join(log.read_text(errors="replace").splitlines()[-8:])
-                raise SingulationError(
-                    ResultCode.INTERNAL, f"{name} ended with code {process.returncode}; its log {log} ends:\n  {tail}"
-                )
+                raise _reason(name, int(process.returncode), self._logs / f"{name}.log")
 
     def stop(self) -> None:
         """Ask all to end, wait, and kill what does not."""
@@ -89,3 +87,13 @@ class NodeProcesses:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.stop()
+
+
+def _reason(name: str, exit_code: int, log: Path) -> SingulationError:
+    lines = log.read_text(errors="replace").splitlines()
+    for line in reversed(lines):
+        found = re.match(r"error: ([A-Z_]+) \(\d+\): (.*)", line)
+        if found and found[1] in ResultCode.__members__:
+            return SingulationError(ResultCode[found[1]], found[2])
+    tail = "\n  ".join(lines[-8:])
+    return SingulationError(ResultCode.INTERNAL, f"{name} ended with code {exit_code}; its log {log} ends:\n  {tail}")
