@@ -1,0 +1,1 @@
+"""Policies against each other over many scenarios: generators, runs, the paper's tables."""

@@ -1,0 +1,106 @@
+"""What one worker does: plan and simulate the pushes of one scene."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from singulation_core import Arrangement, Push, SingulationError, singulation_distance
+from singulation_core.push_world import simulate_push
+from singulation_planner.benchmark.generators import generate
+from singulation_planner.benchmark.record import BEST_MODE, Job, Record
+from singulation_planner.benchmark.scenario import Scenario
+from singulation_planner.benchmark.settings import Setting
+from singulation_planner.plan import plan_push
+
+
+@dataclass(frozen=True, slots=True)
+class SceneRecipe:
+    """How to make a scene again: cheaper to send to a worker than the scene."""
+
+    generator: str
+    n: int
+    group: int
+    seed: int
+
+    @property
+    def key(self) -> str:
+        """Name of the scene it makes."""
+        return f"{self.generator}-n{self.n:02d}-g{self.group}-s{self.seed}"
+
+    def scene(self) -> Scenario:
+        """The scene."""
+        return generate(self.generator, self.n, self.group, self.seed)
+
+
+@dataclass(frozen=True, eq=False)
+class SceneTask:
+    """All jobs for one scene, given as a recipe or, if it comes from a file, itself."""
+
+    setting: Setting
+    source: SceneRecipe | Scenario
+    jobs: Sequence[Job]
+
+
+def evaluate(task: SceneTask) -> list[Record]:
+    """Results of all jobs of a scene. No job can end the run: its error becomes its result."""
+    scenario = task.source.scene() if isinstance(task.source, SceneRecipe) else task.source
+    return [_result(task.setting, scenario, job) for job in task.jobs]
+
+
+def _result(setting: Setting, scenario: Scenario, job: Job) -> Record:
+    before = singulation_distance(scenario.arrangement, scenario.unit)
+    after, code, text, simulating = before, "OK", "", 0.0
+    started = planned = time.process_time()
+    try:
+        push = plan(setting, scenario, job)
+        planned = time.process_time()
+        moved = perform(setting, scenario.arrangement, push)
+        simulating = time.process_time() - planned
+        after = singulation_distance(moved, scenario.unit)
+    except SingulationError as error:
+        code, text = error.code.name, error.message
+        planned = max(planned, time.process_time() - simulating)
+    except Exception as error:
+        code, text = "INTERNAL", f"{type(error).__name__}: {error}"
+    return Record(
+        scenario.key,
+        scenario.n,
+        scenario.group,
+        scenario.seed,
+        job.policy,
+        job.contact_mode,
+        job.fits,
+        code,
+        scenario.unit,
+        before,
+        after,
+        planned - started,
+        simulating,
+        text,
+    )
+
+
+def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
+    """The push that the job's policy plans for the scene.
+
+    Raises:
+        SingulationError: as ``plan_push``.
+    """
+    best = job.contact_mode == BEST_MODE
+    return plan_push(
+        scenario.arrangement,
+        job.policy,
+        "single_point" if best else job.contact_mode,
+        push_distance=setting.push_distance,
+        pusher=setting.pusher,
+        seed=scenario.seed,
+        placement=replace(setting.placement, fits=job.fits),  # type: ignore[arg-type]
+        best_contact_mode=best,
+        physics=setting.physics,
+        **setting.options.get(job.policy, {}),
+    )
+
+
+def perform(setting: Setting, arrangement: Arrangement, push: Push) -> Arrangement:
+    """The arrangement after a push, simulated with the physics of the setting."""
+    return simulate_push(arrangement, push, setting.physics, setting.pusher, setting.physics_unit)
