@@ -25,7 +25,7 @@ from singulation_node.parameters import ParameterSet
 from singulation_node.qos import COMMAND
 from singulation_sim.border import opening_from_msg, trajectory_from_msg
 from singulation_sim.driver import ARMS
-from singulation_sim.scenes import SCENES, random_scene
+from singulation_sim.scenes import SCENES
 from singulation_sim.sim_outputs import SimOutputs
 from singulation_sim.sim_settings import SimSettings
 from singulation_sim.stepper import Stepper
@@ -164,7 +164,7 @@ class SimCell(Node):
         settings = self._settings.current
         if settings.scene_key != self._scene_key:
             self._scene_key = settings.scene_key
-            scene = random_scene(settings.scene, settings.objects, settings.seed, settings.geometry)
+            scene = settings.new_scene()
             with self._lock:
                 self.cell.set_scene(scene)
             self.get_logger().info(f"new scene: {len(scene)} blocks ({settings.scene}, seed {settings.seed})")

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from singulation_core import CellGeometry, InvalidInputError
+from singulation_core import Arrangement, CellGeometry, InvalidInputError
 from singulation_core.push_world import PushPhysics
 from singulation_node.parameters import parameter
 from singulation_sim.camera import PHOXI_FULL, PHOXI_SMALL, PhoxiCamera, SensorDefects
@@ -27,6 +27,8 @@ class SimSettings:
     seed: int = parameter(0, "seed of scene and noise", low=0, high=2**31 - 1)
     scene: str = parameter("mixed", "kinds of blocks", choices=tuple(SCENES))
     objects: int = parameter(0, "number of blocks, 0 for a random one from 3 to 7", low=0, high=40)
+    smallest_gap: float = parameter(0.002, "between a block and the one it is put beside [m]", low=0.0, high=0.1)
+    largest_gap: float = parameter(0.006, "likewise, at most [m]", low=0.0, high=0.1)
     physics: str = parameter("quasi_static", "preset of the push physics", read_only=True)
 
     state_rate: float = parameter(100.0, "joint states per simulated second [Hz]", low=1.0, high=250.0, read_only=True)
@@ -100,6 +102,10 @@ class SimSettings:
             self.workspace[0] < self.workspace[1] and self.workspace[2] < self.workspace[3]
         ):
             raise InvalidInputError(f"workspace {self.workspace}, need x_min < x_max, y_min < y_max")
+        if not (self.smallest_gap <= self.largest_gap):
+            raise InvalidInputError(
+                f"smallest_gap {self.smallest_gap} m is larger than largest_gap {self.largest_gap} m"
+            )
         PushPhysics.named(self.physics)
         _ = self.geometry.body_from_table, self.geometry.table_from_camera
 
@@ -109,9 +115,14 @@ class SimSettings:
         return self.publish_clock or self.speed != 1.0
 
     @property
-    def scene_key(self) -> tuple[str, int, int]:
+    def scene_key(self) -> tuple[object, ...]:
         """What a scene is made from."""
-        return self.scene, self.objects, self.seed
+        return self.scene, self.objects, self.seed, self.smallest_gap, self.largest_gap
+
+    def new_scene(self) -> Arrangement:
+        """Blocks on the table."""
+        gaps = (self.smallest_gap, self.largest_gap)
+        return random_scene(self.scene, self.objects, self.seed, self.geometry, gaps=gaps)
 
     @property
     def geometry(self) -> CellGeometry:
@@ -153,6 +164,5 @@ class SimSettings:
 
     def new_cell(self, start: float) -> SimulatedCell:
         """The cell at the time ``start`` [s], both arms in their clear-view posture, blocks on the table."""
-        scene = random_scene(self.scene, self.objects, self.seed, self.geometry)
         driver = SimulatedDriver(self.driver, start, self.seed)
-        return SimulatedCell(scene, self.geometry, driver, self.camera, PushPhysics.named(self.physics))
+        return SimulatedCell(self.new_scene(), self.geometry, driver, self.camera, PushPhysics.named(self.physics))

@@ -24,6 +24,7 @@ class Stepper:
         speed: simulated seconds per second.
         own_time: see above.
         tell: called without the lock, with whether anything moved in the interval.
+        clock: real time [s].
     """
 
     def __init__(
@@ -35,8 +36,9 @@ class Stepper:
         speed: float,
         own_time: bool,
         tell: Callable[[bool], None],
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._cell, self._lock, self._tell = cell, lock, tell
+        self._cell, self._lock, self._tell, self._clock = cell, lock, tell, clock
         self._interval, self._speed, self._own_time = interval, speed, own_time
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
@@ -62,11 +64,11 @@ class Stepper:
         return reached and not self._stop.is_set()
 
     def _run(self) -> None:
-        origin = time.monotonic()
+        origin = self._clock()
         while not self._stop.is_set():
             self._elapsed += self._interval
             due = origin + self._elapsed / self._speed
-            late = time.monotonic() - due
+            late = self._clock() - due
             self.behind = max(late, 0.0)
             if late < 0.0:
                 self._stop.wait(-late)

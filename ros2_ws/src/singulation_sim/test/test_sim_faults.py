@@ -8,6 +8,7 @@ from singulation_core import InvalidInputError, ResultCode, SingulationError
 from singulation_sim.driver import FAULTS, PERIOD, DriverMode, JointTrajectory, SimulatedDriver
 from singulation_sim.driver.states import JointStates
 from singulation_sim.driver.trajectory import point
+from yumi_push_executor.kinematics import YumiArm
 
 SPEED = 0.2  # rad/s of the motion that faults interrupt
 STOPS = {
@@ -67,6 +68,15 @@ def works_again(driver: SimulatedDriver) -> None:
     run(driver, 0.5)
     assert driver.arms["left"].gripper.opening == pytest.approx(0.01)
     assert np.isfinite(states(driver).positions).all()
+
+
+def works_again_downwards(driver: SimulatedDriver) -> None:
+    """As ``works_again`` for an arm that stands at the upper end of its range."""
+    driver.reset()
+    target = order(driver, -0.2, 0.5)
+    run(driver, 0.7)
+    assert joint(driver) == pytest.approx(target, abs=1e-6)
+    works_again(driver)
 
 
 def test_modes_are_those_of_the_message() -> None:
@@ -148,6 +158,17 @@ def test_without_link_the_arm_moves_on_until_the_session_ends(moving: SimulatedD
     assert states(moving).positions[1] == pytest.approx(joint(moving))
     assert np.ptp(run(moving, 1.0)) == 0.0
     works_again(moving)
+
+
+def test_without_link_the_arm_does_not_leave_its_range(exact_driver: SimulatedDriver) -> None:
+    upper = YumiArm("left").upper
+    order(exact_driver, float(upper[1]) - 0.02 - joint(exact_driver), 2.0)
+    run(exact_driver, 1.9)
+    exact_driver.inject("egm_timeout", 2.0)
+    run(exact_driver, 1.9)
+    assert upper[1] - 0.02 < joint(exact_driver) <= upper[1]
+    run(exact_driver, 0.2)
+    works_again_downwards(exact_driver)
 
 
 def test_frozen_states_repeat_while_the_arm_moves(moving: SimulatedDriver) -> None:

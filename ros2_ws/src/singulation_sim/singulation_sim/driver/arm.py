@@ -95,6 +95,14 @@ class SimulatedArm:
             return
         self.servo.follow(reference, period, speed_limit)
 
+    def _coast(self, period: float) -> None:
+        """Nothing but its own limits stops an arm whose link is down."""
+        ahead = self.positions + self.servo.velocities * period
+        if ((self._lower <= ahead) & (ahead <= self._upper)).all():
+            self.servo.coast(period)
+        else:
+            self.servo.halt()
+
     def stopping(self, phase: Phase, period: float, back_off: float) -> bool:
         """One cycle of a phase in which no trajectory is followed; whether the arm has finished it.
 
@@ -104,7 +112,7 @@ class SimulatedArm:
             back_off: how far behind the place where the stop began an arm goes back, in joint space [rad].
         """
         if phase is Phase.COAST:
-            self.servo.coast(period)
+            self._coast(period)
         elif phase is Phase.BRAKE:
             self.servo.brake(period)
         elif phase is Phase.BACK_OFF and self._was_moving:

@@ -46,6 +46,10 @@ class ArmServo:
         """One cycle at the velocity of the last one."""
         self._move(self.velocities, period)
 
+    def halt(self) -> None:
+        """Stand at once, as against a mechanical limit."""
+        self.velocities = np.zeros_like(self.positions)
+
     def brake(self, period: float) -> None:
         """One cycle of braking: all joints together, so that the tool stays on its path."""
         fastest = float(np.abs(self.velocities).max())
@@ -65,7 +69,7 @@ class ArmServo:
 
         def cycle(period: float) -> bool:
             if not way:
-                self.velocities = np.zeros_like(self.positions)
+                self.halt()
                 return True
             self._move((way.pop() - self.positions) / period, period)
             return False
