@@ -81,12 +81,13 @@ def records_from_text(data: bytes, record: np.dtype[np.void], count: int, path: 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # how NumPy reports text after the last number
         try:
-            numbers = np.fromstring(data.decode("ascii", errors="replace"), sep=" ", count=count * columns)
+            # Not with count: NumPy would fill up what is missing with whatever lies in memory.
+            numbers = np.fromstring(data.decode("ascii", errors="replace"), sep=" ")
         except ValueError:
             numbers = np.empty(0)
-    if len(numbers) != count * columns:
+    if len(numbers) < count * columns:
         raise bad_file(path, f"{count} points of {columns} numbers were announced, {len(numbers)} numbers can be read")
-    table = numbers.reshape(count, columns)
+    table = numbers[: count * columns].reshape(count, columns)
     records = np.empty(count, dtype=record)
     column = 0
     for name, width in widths.items():
