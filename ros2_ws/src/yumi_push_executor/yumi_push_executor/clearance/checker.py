@@ -90,10 +90,16 @@ class Checker:
             for k, pair in enumerate(self._scene.pairs):
                 if not self._counts(pair, stage):
                     data.deactivateCollisionPair(k)
-                near = pair.kind is Kind.FINGER_BLOCK and stage in (Stage.DESCEND, Stage.PUSH)
-                data.collisionRequests[k].security_margin = self._margins.descent if near else self._sizes[pair.kind]
+                data.collisionRequests[k].security_margin = self._margin(pair, stage)
             self._stages[stage] = data
         return self._stages[stage]
+
+    def _margin(self, pair: Pair, stage: Stage) -> float:
+        if pair.kind is Kind.FINGER_BLOCK and stage in (Stage.DESCEND, Stage.PUSH):
+            return self._margins.descent
+        if pair.kind is Kind.FINGER_TABLE and stage in (Stage.DESCEND, Stage.PUSH, Stage.LEAVE):
+            return self._margins.finger_table
+        return self._sizes[pair.kind]
 
     def _counts(self, pair: Pair, stage: Stage) -> bool:
         if pair.kind is Kind.MOVED_BLOCKS:

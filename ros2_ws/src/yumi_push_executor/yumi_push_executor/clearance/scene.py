@@ -1,7 +1,7 @@
 """Everything that stands around one moving arm: body, other arm, table, blocks."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import coal
@@ -20,7 +20,8 @@ class Margins:
         body: arm and own body, or parts of one arm.
         other_arm: between the arms.
         table: arm or gripper and table.
-        finger_table: fingertips and table.
+        finger_table: fingertips and table on the straight lines of a push.
+        finger_travel: fingertips and table while the arm travels.
         block: arm, gripper or travelling fingers and blocks.
         descent: fingers and blocks while they go down beside them, and blocks passed by in a push.
 
@@ -32,14 +33,15 @@ class Margins:
     other_arm: float = 0.020
     table: float = 0.010
     finger_table: float = 0.002
+    finger_travel: float = 0.030
     block: float = 0.005
     descent: float = 0.0005
 
     def __post_init__(self) -> None:
-        for name in ("body", "other_arm", "table", "finger_table", "block", "descent"):
-            value = getattr(self, name)
+        for one in fields(self):
+            value = getattr(self, one.name)
             if not (0.0 <= value <= 0.2):
-                raise InvalidInputError(f"margins: {name} {value} m, need 0 to 0.2")
+                raise InvalidInputError(f"margins: {one.name} {value} m, need 0 to 0.2")
 
     def by_kind(self) -> dict[Kind, float]:
         """Margin of every kind of meeting while the arm travels."""
@@ -47,7 +49,7 @@ class Margins:
             Kind.BODY: self.body,
             Kind.OTHER_ARM: self.other_arm,
             Kind.TABLE: self.table,
-            Kind.FINGER_TABLE: self.finger_table,
+            Kind.FINGER_TABLE: self.finger_travel,
             Kind.BLOCK: self.block,
             Kind.FINGER_BLOCK: self.block,
             Kind.MOVED_BLOCKS: self.block,

@@ -56,7 +56,7 @@ class MotionParameters:
         _check("velocity_share", self.velocity_share, 0.01, 1.0)
         _check("tip_height", self.tip_height, self.margins.finger_table + 1e-4, 0.05)
         _check("travel_clearance", self.travel_clearance, self.margins.block, 0.3)
-        _check("travel_height", self.travel_height, self.tip_height, 0.3)
+        _check("travel_height", self.travel_height, self.margins.finger_travel, 0.3)
         _check("limit_margin", self.limit_margin, 0.0, 0.5)
         _check("straightness", self.straightness, 1e-5, 0.01)
         _check("unknown_height", self.unknown_height, 0.0, 0.2)

@@ -11,12 +11,15 @@ from yumi_push_executor.clearance import Checker, build_scene
 from yumi_push_executor.kinematics import BRANCHES, CLEAR_VIEW, YumiArm
 from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.motion.candidates import ranked
-from yumi_push_executor.motion.complete import Completion
+from yumi_push_executor.motion.complete import complete, leave_view
 from yumi_push_executor.motion.jaws import headings, opening
 from yumi_push_executor.motion.lines import Lines, solve_lines
 from yumi_push_executor.motion.motion import Motion
 from yumi_push_executor.motion.parameters import MotionParameters
+from yumi_push_executor.motion.travel import Travel
+from yumi_push_executor.supervision.trajectory import Trajectory
 
+_NO_BLOCKS = Arrangement(())
 _MOST_TRIED = 24  # candidates that are checked in full; more would break the time budget
 
 
@@ -50,28 +53,59 @@ def plan_motion(
         InvalidInputError: joint angles that are none.
     """
     cell, pusher = cell or CellGeometry(), pusher or PusherGeometry()
-    parameters, arrangement = parameters or MotionParameters(), arrangement or Arrangement(())
+    parameters, arrangement = parameters or MotionParameters(), arrangement or _NO_BLOCKS
     _require_inside(push, cell)
     width = opening(push, pusher)
     postures = {name: YumiArm(name).checked((joints or CLEAR_VIEW)[name]) for name in ARMS}
     solved, refusals = _solve_all(push, cell, _travel_height(arrangement, parameters), parameters, arms)
     candidates = ranked(solved, headings(push), postures, parameters)
     touched = swept_blocks(push, arrangement, pusher)
-    checkers: dict[str, Checker] = {}
+    travels: dict[str, Travel] = {}
     for tried, candidate in enumerate(candidates[:_MOST_TRIED], start=1):
         lines = candidate.lines.turned(candidate.turn)
         name = lines.arm.name
-        if name not in checkers:
+        if name not in travels:
             scene = build_scene(name, cell, arrangement, touched, push.end - push.start, parameters.unknown_height)
-            checkers[name] = Checker(scene, postures, width, parameters.margins)
+            checker = Checker(scene, postures, width, parameters.margins)
+            travels[name] = Travel(lines.arm, checker, cell, parameters)
         try:
-            segments = Completion(lines, checkers[name], postures[name], cell, parameters).segments(width)
+            segments = complete(lines, travels[name], postures[name], width, parameters)
         except SingulationError as refusal:
             refusals.append(refusal)
             continue
         margin = lines.room()[0]
         return Motion(push, name, segments, width, lines.heading, lines.branch, margin, (len(candidates), tried))
     raise _most_telling(refusals, len(candidates))
+
+
+def plan_clear_view(
+    arm: str,
+    arrangement: Arrangement | None = None,
+    *,
+    cell: CellGeometry | None = None,
+    joints: Mapping[str, ArrayLike] | None = None,
+    opening: float = 0.0,
+    parameters: MotionParameters | None = None,
+) -> Trajectory:
+    """Way of one arm from wherever it stands, as after a push that was stopped, to its clear-view posture.
+
+    Args:
+        arm: ``left`` or ``right``.
+        arrangement: blocks to keep clear of, in ``table``.
+        cell: where the table is.
+        joints: present (7,) angles of both arms [rad]; the clear-view postures if None.
+        opening: present distance between the jaws [m].
+        parameters: speeds, heights, margins.
+
+    Raises:
+        SingulationError: ``UNREACHABLE`` or ``PATH_BLOCKED`` with what is in the way.
+    """
+    cell, parameters, arrangement = cell or CellGeometry(), parameters or MotionParameters(), arrangement or _NO_BLOCKS
+    postures = {name: YumiArm(name).checked((joints or CLEAR_VIEW)[name]) for name in ARMS}
+    scene = build_scene(arm, cell, arrangement, (), np.zeros(2), parameters.unknown_height)
+    checker = Checker(scene, postures, opening, parameters.margins)
+    travel = Travel(YumiArm(arm), checker, cell, parameters)
+    return leave_view(travel, arm, postures[arm], _travel_height(arrangement, parameters))
 
 
 def swept_blocks(push: Push, arrangement: Arrangement, pusher: PusherGeometry) -> frozenset[int]:

@@ -1,0 +1,1 @@
+"""Benchmarks of the executor's motion planning."""
