@@ -1,0 +1,1 @@
+"""What the simulated cell costs, and that it does not grow."""
