@@ -94,7 +94,7 @@ class Placer:
         """Index and (2,) start point of the first candidate that can be performed."""
         starts, status = self._blank(len(candidates.objects))
         index = self._place(candidates, 0, False, starts, status)
-        while index >= 0 and self._over_edge(candidates, index):
+        while index >= 0 and self._over_edge(candidates, index, starts[index]):
             status[index] = OVER_EDGE
             index = self._place(candidates, index + 1, False, starts, status)
         if index >= 0:
@@ -107,7 +107,7 @@ class Placer:
         starts, status = self._blank(len(candidates.objects))
         self._place(candidates, 0, True, starts, status)
         for index in np.flatnonzero(status == FEASIBLE).tolist():
-            if self._over_edge(candidates, index):
+            if self._over_edge(candidates, index, starts[index]):
                 status[index] = OVER_EDGE
         self.rejected.update(status[status != FEASIBLE].tolist())
         chosen = np.flatnonzero(status == FEASIBLE)
@@ -168,21 +168,25 @@ class Placer:
             )
         )
 
-    def _over_edge(self, candidates: Candidates, index: int) -> bool:
+    def _over_edge(self, candidates: Candidates, index: int, start: FloatArray) -> bool:
         if not len(self.walls[1]):
             return False
-        scene, (dx, dy) = self.scene, candidates.directions[index].tolist()
+        scene, target = self.scene, int(candidates.objects[index])
+        tip, half_edge, _, clearance = self.pusher.tolist()
+        half_width = half_edge if self.mode is ContactMode.EDGE else tip
+        if self.mode is ContactMode.TWO_POINT:
+            half_width += float(self.jaws[target])
         return bool(
             carried_over(
                 scene.centroids,
                 scene.radii,
                 *self.walls,
-                int(candidates.objects[index]),
-                dx,
-                dy,
+                target,
+                *start.tolist(),
+                *candidates.directions[index].tolist(),
+                half_width,
                 self.travel,
-                float(self.pusher[3]),
-                np.empty(len(scene)),
+                clearance,
             )
         )
 
