@@ -22,8 +22,9 @@ def _both(left: tuple[float, ...]) -> dict[str, FloatArray]:
 # ABB's Home: arms folded in front of the body.
 FOLDED = _both((0.0, -130.0, 135.0, 30.0, 0.0, 40.0, 0.0))
 
-# Beside the table, jaws down: nothing of the arm beyond the shoulder comes within 5 cm of the camera's view.
-CLEAR_VIEW = _both((-45.0, -98.0, 44.0, 10.0, 103.0, 76.0, 0.0))
+# High beside the table, jaws down: nothing of the arm beyond the shoulder comes within 5 cm of the camera's view, and
+# moves that are straight in joint space from here to almost everywhere over the workspace stay high above the table.
+CLEAR_VIEW = _both((-34.0, -98.0, -8.0, 43.0, 57.0, 114.0, 0.0))
 
 # Postures over the table with the jaws down, one for each way to hold the elbow and the wrist. Inverse kinematics
 # starts from them and stays as near to them as the task allows. The first serves nearly the whole workspace.
