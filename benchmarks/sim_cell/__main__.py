@@ -79,7 +79,7 @@ def _cycle_rows(repeats: int) -> Sequence[Row]:
                 sweeper.approach(height)
                 sweeper.start(height)
             start = time.process_time()
-            sweeper.run(1.0)
+            sweeper.cell.run(1.0)
             times.append(time.process_time() - start)
         cycle = float(np.median(times)) * PERIOD
         rows.append((f"cycle of {PERIOD * 1e3:.0f} ms, {what}", f"{cycle * 1e6:.0f}", "us"))
@@ -97,7 +97,7 @@ def _long_run(cycles: int) -> Sequence[Row]:
         sweeper.cell.render(sweeper.cell.view())
         sweeper.approach(0.01)
         sweeper.start(0.01)
-        sweeper.run(1.2)
+        sweeper.cell.run(1.2)
         if cycle == cycles // 10:
             early = (process.memory_info().rss, process.num_threads(), process.num_fds())
     seconds = (time.process_time() - start) / cycles

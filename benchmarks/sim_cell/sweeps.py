@@ -5,7 +5,7 @@ import numpy as np
 from singulation_core import CellGeometry
 from singulation_core.polygon import FloatArray
 from singulation_sim.cell import SimulatedCell
-from singulation_sim.driver import PERIOD, JointTrajectory
+from singulation_sim.driver import JointTrajectory
 from singulation_sim.driver.trajectory import point
 from yumi_push_executor.kinematics import TIP_OFFSET, YumiArm
 from yumi_push_executor.kinematics.postures import BRANCHES
@@ -31,18 +31,13 @@ class Sweeper:
         self.cell.driver.reset()
         for x, y, z, seconds in ((*_END, _ABOVE, 1.0), (*_START, _ABOVE, 1.0), (*_START, height, 1.0)):
             self._send([(x, y, z)], seconds)
-            self.run(seconds + 0.2)
+            self.cell.run(seconds + 0.2)
 
     def start(self, height: float) -> None:
         """Begin to cross the table within a second."""
         ways = np.linspace(0.0, 1.0, 21)[1:, None]
         line = np.array(_START) + ways * (np.array(_END) - np.array(_START))
         self._send([(x, y, height) for x, y in line.tolist()], 1.0)
-
-    def run(self, seconds: float) -> None:
-        """Let simulated time pass."""
-        for _ in range(round(seconds / PERIOD)):
-            self.cell.step()
 
     def _send(self, tips: list[tuple[float, float, float]], seconds: float) -> None:
         knots = []

@@ -11,7 +11,7 @@ from singulation_core.polygon import FloatArray
 from singulation_core.push_world import PushPhysics
 from singulation_core.transforms import inverse
 from singulation_sim.camera import PhoxiCamera, RobotShape
-from singulation_sim.driver import SimulatedDriver
+from singulation_sim.driver import PERIOD, SimulatedDriver
 from singulation_sim.table import Fingertip, Table, fingertips
 from yumi_push_executor.kinematics import YumiArm
 
@@ -74,6 +74,11 @@ class SimulatedCell:
             self._stall_hands()
         self._moved = moves
         return moves
+
+    def run(self, seconds: float) -> None:
+        """Let simulated time pass."""
+        for _ in range(round(seconds / PERIOD)):
+            self.step()
 
     def arrangement(self) -> Arrangement:
         """Where the blocks really are, stamped now."""

@@ -24,6 +24,7 @@ from singulation_node.main import plain_arguments, run_node
 from singulation_node.parameters import ParameterSet
 from singulation_node.qos import COMMAND
 from singulation_sim.border import opening_from_msg, trajectory_from_msg
+from singulation_sim.camera import warm_up
 from singulation_sim.driver import ARMS
 from singulation_sim.scenes import SCENES
 from singulation_sim.sim_outputs import SimOutputs
@@ -42,6 +43,7 @@ class SimCell(Node):
         self._settings: ParameterSet[SimSettings] = ParameterSet(self, SimSettings)
         self.diagnostics = Diagnostics(self)
         settings = self._settings.current
+        warm_up()
         self.cell = settings.new_cell(_OWN_START if settings.own_time else time.time())
         self._scene_key = settings.scene_key
         self._lock = threading.Condition()

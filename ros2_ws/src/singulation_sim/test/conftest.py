@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from singulation_core import Arrangement, CellGeometry, PlanarObject
 from singulation_sim.cell import SimulatedCell
-from singulation_sim.driver import PERIOD, DriverSettings, JointTrajectory, SimulatedDriver
+from singulation_sim.driver import DriverSettings, JointTrajectory, SimulatedDriver
 from singulation_sim.driver.trajectory import point
 from yumi_push_executor.kinematics import TIP_OFFSET, YumiArm
 from yumi_push_executor.kinematics.postures import BRANCHES
@@ -53,8 +53,7 @@ class ArmDriver:
 
     def run(self, seconds: float) -> None:
         """Let simulated time pass."""
-        for _ in range(round(seconds / PERIOD)):
-            self.cell.step()
+        self.cell.run(seconds)
 
     def stand_at(self, x: float, y: float, z: float) -> None:
         """Bring the tip there and wait."""

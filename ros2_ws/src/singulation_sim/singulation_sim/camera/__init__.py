@@ -2,7 +2,7 @@
 
 from singulation_sim.camera.defects import SensorDefects
 from singulation_sim.camera.model import PHOXI_FULL, PHOXI_SMALL, CameraModel
-from singulation_sim.camera.phoxi import PhoxiCamera
+from singulation_sim.camera.phoxi import PhoxiCamera, warm_up
 from singulation_sim.camera.robot_shape import RobotShape
 from singulation_sim.camera.solid import Solid, block_solid, box_solid
 
@@ -16,4 +16,5 @@ __all__ = [
     "Solid",
     "block_solid",
     "box_solid",
+    "warm_up",
 ]

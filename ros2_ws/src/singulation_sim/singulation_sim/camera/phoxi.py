@@ -105,6 +105,12 @@ class PhoxiCamera:
         return self._window(np.vstack((corners, transform_points(self._camera_from_table, on_table))))
 
 
+def warm_up() -> None:
+    """Load or compile the ray casting now rather than at the first cloud."""
+    camera = PhoxiCamera(model=CameraModel(8, 6, 10.0, (4.0, 3.0)))
+    camera.capture(Arrangement([]), [box_solid((0.01, 0.01, 0.01))])
+
+
 def _packed(solids: Sequence[Solid], windows: Sequence[tuple[int, int, int, int]]) -> raycast.Solids:
     """Solids with the window that concerns each."""
     starts = np.cumsum([0, *(len(solid.offsets) for solid in solids)], dtype=np.int64)
