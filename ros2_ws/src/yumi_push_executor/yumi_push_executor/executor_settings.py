@@ -116,7 +116,10 @@ class ExecutorSettings:
     stopped_speed: float = parameter(
         _LIMITS.stopped_speed, "joint speed that counts as standing [rad/s]", low=0.0001, high=0.2
     )
-    stop_duration: float = parameter(_LIMITS.stop_duration, "duration of a stop [s]", low=0.01, high=2.0)
+    stop_duration: float = parameter(_LIMITS.stop_duration, "duration of a stop, at least [s]", low=0.01, high=2.0)
+    stop_deceleration: float = parameter(
+        _LIMITS.stop_deceleration, "of the joints, at the beginning of a stop [rad/s^2]", low=0.5, high=200.0
+    )
     stop_speed: float = parameter(
         _LIMITS.stop_speed,
         "joint speed of the way back from the command to a measured position [rad/s]",

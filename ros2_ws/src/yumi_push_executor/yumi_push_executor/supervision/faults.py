@@ -22,6 +22,7 @@ class Fault:
         text: what, the value and what would have been right.
         stop: where to hold.
         lift: whether a retreat upwards may follow, if the driver allows.
+        frozen: whether the measured states are not to be believed: only when they change standstill can be seen.
         both_arms: whether the arm that was not to move is held, too.
     """
 
@@ -29,4 +30,5 @@ class Fault:
     text: str
     stop: Stop = Stop.MEASURED
     lift: bool = False
+    frozen: bool = False
     both_arms: bool = False

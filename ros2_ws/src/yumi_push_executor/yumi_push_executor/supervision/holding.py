@@ -26,12 +26,5 @@ def hold_arm(arm: str, watch: StateWatch, limits: SupervisionLimits, commanded: 
     if latest is None:
         raise SingulationError(ResultCode.NOT_READY, f"where the {arm} arm is has never been reported; cannot hold it")
     position = latest.positions[arm]
-    trajectory = hold_at(
-        position,
-        np.nan_to_num(watch.speed(arm)),
-        position if commanded is None else commanded,
-        least=limits.stop_duration,
-        speed=limits.stop_speed,
-        allowed=watch.ranges[arm],
-    )
-    return ArmOrder(arm, trajectory)
+    where = position if commanded is None else commanded
+    return ArmOrder(arm, hold_at(position, np.nan_to_num(watch.speed(arm)), where, limits, watch.ranges[arm]))

@@ -114,7 +114,7 @@ class SegmentRun:
     def _stop(self, following: FollowingWatch, how: Stop, time: float) -> ArmOrder:
         if how is Stop.ALONG_PATH and following.begun:
             elapsed = following.matched(time)
-            return ArmOrder(self.segment.arm, stop_along(following.trajectory, elapsed, self._limits.stop_duration))
+            return ArmOrder(self.segment.arm, stop_along(following.trajectory, elapsed, self._limits))
         commanded, _ = following.trajectory.sample(following.elapsed(time))
         return hold_arm(self.segment.arm, self._watch, self._limits, commanded[0])
 

@@ -53,11 +53,11 @@ class StateWatch:
         if latest is not None and sample.taken < latest.taken - _CLOCK_RESTART:
             self._good.clear()
             latest = None
+        # A late sample is no more than a missing one: a hiccup of this machine must not end a motion, silence will.
+        self._delay = self._delay_problem(sample, now)
         if latest is not None and sample.taken <= latest.taken:
             self.refused += 1
             return False
-        # A late sample is no more than a missing one: a hiccup of this machine must not end a motion, silence will.
-        self._delay = self._delay_problem(sample, now)
         self._problem = "" if self._delay else sample_problem(sample, self.ranges)
         if self._delay or self._problem:
             self.refused += 1

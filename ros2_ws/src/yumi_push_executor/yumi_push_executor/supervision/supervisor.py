@@ -22,6 +22,8 @@ from yumi_push_executor.supervision.trajectory import Trajectory
 PlanLift = Callable[[str, FloatArray], Trajectory | None]
 """Trajectory of a retreat upwards for an arm at (7,) rad; None if it is high enough already; may refuse."""
 
+_FASTEST = 100.0  # simulated seconds per second of a simulation that is believed
+
 
 class _Stage(Enum):
     MOVING = auto()
@@ -142,7 +144,7 @@ class Supervisor:
         )
 
     def _state_fault(self, now: Instant) -> Fault | None:
-        """States that seem old just after this process was held up may be waiting to be read: judge at the next step."""
+        """States that seem old after a pause of this process may be waiting to be read: judge at the next step."""
         hiccup = min(now.time - self._last.time, now.wall - self._last.wall) > 0.5 * self._limits.state_age
         self._hiccup = hiccup and not self._hiccup
         return None if self._hiccup else self._watch.fault(now)
@@ -153,9 +155,11 @@ class Supervisor:
         return driver_fault(driver, self._limits, now)
 
     def _blind_fault(self, now: Instant) -> Fault | None:
-        gap = min(now.time - self._last.time, now.wall - self._last.wall)
-        if now.time < self._last.time - self._limits.state_delay:
-            return Fault(ResultCode.TIMEOUT, f"the clock went back by {self._last.time - now.time:.1f} s")
+        passed, wall = now.time - self._last.time, now.wall - self._last.wall
+        if not (-self._limits.state_delay <= passed <= _FASTEST * wall + 1.0):
+            text = f"the clock jumped by {passed:.1f} s within {wall:.2f} s of the steady clock"
+            return Fault(ResultCode.TIMEOUT, text, Stop.ALONG_PATH)
+        gap = min(passed, wall)
         if not (gap <= self._limits.blind_time):
             text = f"the supervision did not run for {gap:.2f} s, limit {self._limits.blind_time} s"
             return Fault(ResultCode.TIMEOUT, text, lift=True)
@@ -168,8 +172,7 @@ class Supervisor:
             self._notes.append(f"the retreat was stopped: {fault.text}")
             self._fault = replace(self._fault, lift=False)
         self._orders += self._running.stop_orders(fault, now.time)
-        believe = fault.code is not ResultCode.NO_PROGRESS or fault.stop is Stop.MEASURED
-        self._settling = Settling(now, believe, self._watch, self._limits)
+        self._settling = Settling(now, not fault.frozen, self._watch, self._limits)
         self._stage = _Stage.STOPPING
 
     def _settle(self, now: Instant) -> None:

@@ -11,7 +11,7 @@ from yumi_push_executor.supervision.limits import SupervisionLimits
 from yumi_push_executor.supervision.trajectory import Trajectory
 
 _NOTICED = 0.003  # rad; a movement larger than this is no noise
-_GRID = 0.008  # s between the points of the command that a measured position is compared with
+_GRID = 0.004  # s between the points of the command that a measured position is compared with
 _STILL = 0.1  # share of the commanded movement below which an arm counts as not moving
 
 
@@ -38,7 +38,8 @@ class FollowingWatch:
         self._latency: float | None = None
         self._behind = 0.0  # s between now and the point of the command that the last position matched best
         self._seen: deque[tuple[float, FloatArray]] = deque()
-        self._visible = _first_movement(trajectory)
+        self._commands = trajectory.sample(np.arange(0.0, trajectory.duration + _GRID, _GRID))[0]
+        self._visible = _first_movement(self._commands)
 
     @property
     def begun(self) -> bool:
@@ -57,12 +58,9 @@ class FollowingWatch:
         """Judge one measured position, (7,) rad."""
         self._remember(taken, positions)
         self._learn_latency(taken, positions)
-        if self._overdue(taken):
-            text = f"the {self._arm} arm has not begun to move {self._limits.start_latency} s after it was ordered to"
-            return Fault(ResultCode.NO_PROGRESS, text, lift=True)
-        frozen = self._frozen(taken)
-        if frozen is not None:
-            return frozen
+        fault = self._late_start(taken) or self._frozen(taken)
+        if fault is not None:
+            return fault
         error = self._error(taken, positions)
         worst = int(error.argmax())
         if error[worst] <= self._limits.path_tolerance:
@@ -102,25 +100,35 @@ class FollowingWatch:
                 seen = taken - self.sent - self._visible
                 self._latency = min(max(seen, -self._limits.clock_skew), self._limits.start_latency)
 
-    def _overdue(self, taken: float) -> bool:
+    def _late_start(self, taken: float) -> Fault | None:
         if self._visible is None or self._latency is not None:
-            return False
-        return not (taken - self.sent - self._visible <= self._limits.start_latency)
+            return None
+        if taken - self.sent - self._visible <= self._limits.start_latency:
+            return None
+        text = f"the {self._arm} arm has not begun to move {self._limits.start_latency} s after it was ordered to"
+        if self._unchanged():
+            return Fault(ResultCode.NO_PROGRESS, f"{text}; its joint states are frozen", frozen=True)
+        return Fault(ResultCode.NO_PROGRESS, text, lift=True)
 
     def _error(self, taken: float, positions: FloatArray) -> FloatArray:
         """(7,) distance to the nearest allowed point of the command, each joint [rad]."""
         latency = self._limits.start_latency if self._latency is None else max(self._latency, 0.0)
-        behind = np.arange(-self._limits.clock_skew, latency + self._limits.lag + _GRID, _GRID)
-        commands, _ = self.trajectory.sample(taken - self.sent - behind)
-        errors = np.abs(commands - positions)
+        raw, last = taken - self.sent, len(self._commands) - 1
+        first = min(max(int((raw - latency - self._limits.lag) / _GRID), 0), last)
+        end = min(max(int((raw + self._limits.clock_skew) / _GRID), first), last)
+        errors = np.abs(self._commands[first : end + 1] - positions)
         best = int(errors.max(axis=1).argmin())
-        self._behind = float(behind[best])
+        if len(self._seen) > 1 and not np.array_equal(self._seen[-2][1], positions):
+            self._behind = raw - (first + best) * _GRID  # states that do not change say nothing about the arm
         return np.asarray(errors[best])
 
-    def _frozen(self, taken: float) -> Fault | None:
-        """Encoders of a moving arm are never this still: the numbers are frozen, the arm may be moving."""
+    def _unchanged(self) -> bool:
+        """Encoders of a real arm are never so still that not one bit changes: the numbers are frozen, not the arm."""
         values = np.array([positions for _, positions in self._seen])
-        if not self.begun or len(values) < 3 or np.ptp(values, axis=0).any():
+        return len(values) > 2 and not np.ptp(values, axis=0).any()
+
+    def _frozen(self, taken: float) -> Fault | None:
+        if not self.begun or not self._unchanged():
             return None
         span, commanded, _ = self._window(taken)
         if not (span >= self._limits.progress_window and commanded > _NOTICED):
@@ -130,6 +138,7 @@ class FollowingWatch:
             f"the joint states of the {self._arm} arm are frozen: not one bit changed for {span:.2f} s while it was "
             f"ordered to move {commanded:.4f} rad",
             Stop.ALONG_PATH,
+            frozen=True,
         )
 
     def _explain(self, taken: float, text: str) -> Fault:
@@ -148,9 +157,7 @@ class FollowingWatch:
         return taken - then, float(np.abs(ordered[1] - ordered[0]).max()), moved
 
 
-def _first_movement(trajectory: Trajectory) -> float | None:
+def _first_movement(commands: FloatArray) -> float | None:
     """When the command has left its start by more than noise [s], None if it never does."""
-    times = np.arange(0.0, trajectory.duration + _GRID, _GRID)
-    positions, _ = trajectory.sample(times)
-    far = np.flatnonzero(np.abs(positions - trajectory.start).max(axis=1) > _NOTICED)
-    return float(times[far[0]]) if len(far) else None
+    far = np.flatnonzero(np.abs(commands - commands[0]).max(axis=1) > _NOTICED)
+    return float(far[0]) * _GRID if len(far) else None

@@ -1,0 +1,90 @@
+"""A driver node as the cell has one: takes trajectories and jaw openings, publishes joint and driver states."""
+
+import threading
+import time
+
+import numpy as np
+from fake_robot import ARMS, CYCLE, HOME, FakeArm
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from singulation_msgs.msg import DriverState
+from std_msgs.msg import Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory
+
+from singulation_node.qos import COMMAND, STATE
+from yumi_push_executor.supervision import Trajectory
+
+PERIOD = 0.01  # s between joint states
+NAMES = {arm: tuple(f"yumi_rob{arm[0]}_joint_{number}" for number in range(1, 8)) for arm in ARMS}
+FINGERS = {"left": "gripper_l_joint", "right": "gripper_r_joint"}
+
+
+class FakeDriver(Node):
+    """Two arms in real time; what the test wants to go wrong it sets on ``arms``, ``state`` and ``change``."""
+
+    def __init__(self, names=NAMES, **options):
+        super().__init__("fake_driver", **options)
+        self.names = names
+        self.lock = threading.Lock()
+        self.arms = {arm: FakeArm(np.array(HOME[arm])) for arm in ARMS}
+        self.openings, self.wanted = dict.fromkeys(ARMS, 0.0), dict.fromkeys(ARMS, 0.0)
+        self.state = DriverState(
+            mode=DriverState.MOTORS_ON, motion_enabled=True, left_gripper_calibrated=True, right_gripper_calibrated=True
+        )
+        self.change = lambda message: message  # of joint states; None drops them
+        self.trajectories, self.fastest = [], 0.0
+        self.noise = np.random.default_rng(1)
+        self._states = self.create_publisher(JointState, "joint_states", STATE)
+        self._driver = self.create_publisher(DriverState, "driver_state", STATE)
+        for arm in ARMS:
+            self._listen(arm)
+        self._time = time.monotonic()
+        self.create_timer(PERIOD, self._tick)
+
+    def _listen(self, arm):
+        self.create_subscription(
+            JointTrajectory,
+            f"{arm}_arm_controller/joint_trajectory",
+            lambda message: self._order(arm, message),
+            COMMAND,
+        )
+        self.create_subscription(
+            Float64MultiArray,
+            f"{arm}_gripper_controller/commands",
+            lambda message: self.wanted.__setitem__(arm, message.data[0]),
+            COMMAND,
+        )
+
+    def _order(self, arm, message):
+        assert message.header.stamp.sec == 0, "stamp 0 means now"
+        places = [message.joint_names.index(name) for name in self.names[arm]]
+        times = [point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec for point in message.points]
+        positions = [[point.positions[place] for place in places] for point in message.points]
+        velocities = [[point.velocities[place] for place in places] for point in message.points]
+        with self.lock:
+            self.trajectories.append((time.monotonic(), arm, message))
+            if self.state.motion_enabled:
+                self.arms[arm].order(Trajectory(times, positions, velocities), self._time)
+
+    def _tick(self):
+        with self.lock:
+            while self._time < time.monotonic():
+                self._time += CYCLE
+                for arm in ARMS:
+                    self.arms[arm].cycle(self._time, self.state.motion_enabled)
+                    step = 0.05 * CYCLE
+                    self.openings[arm] += float(np.clip(self.wanted[arm] - self.openings[arm], -step, step))
+            self.fastest = max(float(np.abs(self.arms[arm].v).max()) for arm in ARMS)
+            message = self.change(self._message())
+        if message is not None:
+            self._states.publish(message)
+        self.state.header.stamp = self.get_clock().now().to_msg()
+        self._driver.publish(self.state)
+
+    def _message(self):
+        joints = {name: float(q) for arm in ARMS for name, q in zip(self.names[arm], self.arms[arm].q, strict=True)}
+        joints = {name: q + 2e-5 * float(self.noise.standard_normal()) for name, q in joints.items()}
+        joints |= {FINGERS[arm]: self.openings[arm] / 2.0 for arm in ARMS}
+        message = JointState(name=sorted(joints), position=[joints[name] for name in sorted(joints)])
+        message.header.stamp = self.get_clock().now().to_msg()
+        return message
