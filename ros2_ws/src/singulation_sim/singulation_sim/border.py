@@ -9,8 +9,7 @@ from std_msgs.msg import Header
 
 from singulation_core import InvalidInputError
 from singulation_core.conversions import seconds_of
-from singulation_sim.driver import DriverStatus, JointTrajectory, TrajectoryPoint
-from singulation_sim.driver.states import JointStates
+from singulation_sim.driver import DriverStatus, JointStates, JointTrajectory, TrajectoryPoint
 
 
 def trajectory_from_msg(message: Any) -> JointTrajectory:

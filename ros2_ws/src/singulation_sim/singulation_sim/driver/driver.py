@@ -1,75 +1,22 @@
 """The simulated driver of both arms: what the robot controller and ros2_control together show to the outside."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from singulation_core import InvalidInputError, ResultCode, SingulationError
-from singulation_core.polygon import FloatArray
 from singulation_sim.driver.arm import SimulatedArm
 from singulation_sim.driver.controller import TrajectoryController
 from singulation_sim.driver.faults import FaultBoard, known_fault
 from singulation_sim.driver.gripper import Gripper
 from singulation_sim.driver.mode import DriverMode
 from singulation_sim.driver.safety import Phase, SafetyController
+from singulation_sim.driver.sensors import JointSensors
 from singulation_sim.driver.servo import ArmServo
-from singulation_sim.driver.states import JointStates, StateFaults
+from singulation_sim.driver.settings import ARMS, PERIOD, DriverSettings, DriverStatus
+from singulation_sim.driver.states import JointStates
 from singulation_sim.driver.trajectory import JointTrajectory, accepted
 from yumi_push_executor.kinematics import YumiArm
-
-ARMS = ("left", "right")
-PERIOD = 0.004  # s; EGM's cycle
-
-
-def joint_names(prefix: str) -> tuple[str, ...]:
-    """Joint names as abb_robot_driver makes them, e.g. of the prefix ``yumi_robl``."""
-    return tuple(f"{prefix}_joint_{number}" for number in range(1, 8))
-
-
-@dataclass(frozen=True, slots=True)
-class DriverSettings:
-    """Properties of the simulated robot.
-
-    Args:
-        joints: names of each arm's joints from the shoulder to the flange.
-        finger_joints: name of each hand's finger joint.
-        lag: time constant with which the joints follow [s].
-        position_noise: standard deviation of measured joint positions [rad].
-        velocity_noise: standard deviation of measured joint velocities [rad/s].
-        braking: joint deceleration of a stop [rad/s^2].
-        back_off: way back after a collision, in joint space [rad]; 0.01 is about 4 mm at the tool.
-        collision_handler_time: after the way back, until motion is taken again [s]; negative: not before a reset.
-        egm_timeout: how long the robot moves on without data [s].
-        grippers_calibrated: at the start and after a reset.
-    """
-
-    joints: Mapping[str, tuple[str, ...]] = field(
-        default_factory=lambda: {"left": joint_names("yumi_robl"), "right": joint_names("yumi_robr")}
-    )
-    finger_joints: Mapping[str, str] = field(
-        default_factory=lambda: {"left": "gripper_l_joint", "right": "gripper_r_joint"}
-    )
-    lag: float = 0.02
-    position_noise: float = 2e-5
-    velocity_noise: float = 5e-4
-    braking: float = 20.0
-    back_off: float = 0.01
-    collision_handler_time: float = 0.5
-    egm_timeout: float = 1.0
-    grippers_calibrated: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class DriverStatus:
-    """Content of ``singulation_msgs/msg/DriverState`` without its header."""
-
-    mode: DriverMode
-    motion_enabled: bool
-    left_gripper_calibrated: bool
-    right_gripper_calibrated: bool
-    message: str
 
 
 class SimulatedDriver:
@@ -87,8 +34,7 @@ class SimulatedDriver:
         self.arms = {name: _arm(name, self.settings) for name in ARMS}
         self._safety = SafetyController()
         self._faults = FaultBoard()
-        self._rng = np.random.default_rng(seed)
-        self._states = StateFaults()
+        self._sensors = JointSensors(self.settings, seed)
         self._late: list[tuple[float, str, JointTrajectory]] = []
 
     @property
@@ -181,33 +127,16 @@ class SimulatedDriver:
     def joint_states(self) -> JointStates | None:
         """Measured states of all joints, with the faults that are present; None if they are lost."""
         frozen = self._safety.phase is Phase.COAST
-        return self._states.shown(self._measured(), self._faults, self.now, frozen)
+        return self._sensors.shown(self.arms, self._faults, self.now, frozen)
 
     def _follow(self) -> None:
         limit = self._faults.value("slow", self.now)
         for arm in self.arms.values():
-            noise = self._noise(len(arm.joint_names)) if arm.controller.is_moving else np.zeros((2, 1))
+            noise = self._sensors.noise() if arm.controller.is_moving else np.zeros((2, 1))
             problem = arm.follow(self.now, PERIOD, math.inf if limit is None else limit, noise)
             if problem is not None:
                 self._stop(DriverMode.MOTORS_OFF, problem, math.inf)
                 return
-
-    def _measured(self) -> JointStates:
-        names: list[str] = []
-        positions, velocities = [], []
-        for arm in self.arms.values():
-            noise = self._noise(len(arm.joint_names))
-            names += arm.joint_names
-            positions.append(arm.positions + noise[0])
-            velocities.append(arm.servo.velocities + noise[1])
-        fingers = [arm.gripper.finger_position for arm in self.arms.values()]
-        names += [self.settings.finger_joints[name] for name in ARMS]
-        rates = [arm.gripper.finger_velocity for arm in self.arms.values()]
-        return JointStates(tuple(names), np.concatenate((*positions, fingers)), np.concatenate((*velocities, rates)))
-
-    def _noise(self, joints: int) -> FloatArray:
-        sigma = np.array(((self.settings.position_noise,), (self.settings.velocity_noise,)))
-        return np.asarray(sigma * self._rng.standard_normal((2, joints)))
 
     def _deliver_late(self) -> None:
         due = [item for item in self._late if item[0] <= self.now]
