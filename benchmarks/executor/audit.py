@@ -14,7 +14,7 @@ from yumi_push_executor.clearance import build_scene, parts_in_view
 from yumi_push_executor.clearance.shapes import Kind
 from yumi_push_executor.kinematics import CLEAR_VIEW, TIP_OFFSET
 from yumi_push_executor.kinematics.model import arm_model, robot
-from yumi_push_executor.motion.plan import swept_blocks
+from yumi_push_executor.motion.table import swept_blocks
 from yumi_push_executor.supervision.segment import Phase
 
 _STEP = 0.004  # [s], as the robot's controller interpolates

@@ -57,12 +57,14 @@ class Checker:
             self._q[list(arm_model(name).positions)] = angles
         self._q[list(arm_model(scene.arm).fingers)] = 0.5 * opening
         self._stages: dict[Stage, Any] = {}
+        self.checked = 0  # postures so far
 
     def first_contact(self, postures: FloatArray, stage: Stage) -> tuple[int, Contact] | None:
         """Index of the first of (n, 7) postures that is not clear, and what is in its way; None if all are."""
         data = self._stage(stage)
         for index, posture in enumerate(postures):
             self._q[self._positions] = posture
+            self.checked += 1
             if pin.computeCollisions(self._model, self._data, self._scene.geometry, data, self._q, True):
                 pair = next(k for k, one in enumerate(data.collisionResults) if one.isCollision())
                 return index, self._contact(data, pair)

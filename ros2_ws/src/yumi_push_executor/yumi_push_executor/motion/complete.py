@@ -30,7 +30,8 @@ def complete(
     _require_clear_lines(lines, travel)
     for line, where in ((lines.down, "going down"), (lines.push, "pushing"), (lines.up, "rising")):
         _require_straight(lines, line, parameters.straightness, where)
-    approach, extra = _approach(lines, travel, present)
+    lift = travel.lift(present, float(travel.tip_in_table(lines.down.start)[2]))
+    approach, extra = _approach(lines, travel, present if lift is None else lift.end)
     rise, leave = _leave(lines, travel)
     parts = {
         Phase.APPROACH: approach,
@@ -39,8 +40,10 @@ def complete(
         Phase.RETREAT: lines.up if rise is None else joined([lines.up, rise]),
         Phase.CLEAR_VIEW: leave,
     }
-    moves = (Segment(phase, name, trajectory=trajectory) for phase, trajectory in parts.items())
-    return (Segment(Phase.GRIPPER, name, opening=opening), *moves)
+    moves = [Segment(phase, name, trajectory=trajectory) for phase, trajectory in parts.items()]
+    # Jaws that stand low may have a block between them: they move only after they have risen.
+    first = [] if lift is None else [Segment(Phase.APPROACH, name, trajectory=lift)]
+    return (*first, Segment(Phase.GRIPPER, name, opening=opening), *moves)
 
 
 def leave_view(travel: Travel, name: str, present: FloatArray, height: float) -> Trajectory:
@@ -88,19 +91,16 @@ def _require_straight(lines: Lines, line: Trajectory, tolerance: float, where: s
         )
 
 
-def _approach(lines: Lines, travel: Travel, present: FloatArray) -> tuple[Trajectory, Trajectory | None]:
-    """Way from the present posture to above the start, and how much higher than the lines it ends (upwards)."""
+def _approach(lines: Lines, travel: Travel, begin: FloatArray) -> tuple[Trajectory, Trajectory | None]:
+    """Way from a posture to above the start, and how much higher than the lines it ends (upwards)."""
     above = lines.down.start
-    height = float(travel.tip_in_table(above)[2])
-    lift = travel.lift(present, height)
-    begin = present if lift is None else lift.end
     refusal: SingulationError | None = None
     for vias, rise in product(((), (CLEAR_VIEW[lines.arm.name],)), _RISES):
         try:
             extra = travel.rise(above, rise, Stage.TRAVEL, "above the start") if rise else None
             stops = [begin, *vias, above if extra is None else extra.end]
             moves = [travel.move(a, b, Stage.TRAVEL, "on the way to the start") for a, b in pairwise(stops)]
-            return joined(moves if lift is None else [lift, *moves]), extra
+            return joined(moves), extra
         except SingulationError as error:
             refusal = refusal or error
     assert refusal is not None  # for the type checker: every pass returns or refuses

@@ -14,7 +14,8 @@ class Motion:
     Args:
         push: what it performs, in ``table``.
         arm: ``left`` or ``right``.
-        segments: gripper, approach, descend, push, retreat, clear view; in this order.
+        segments: gripper, approach, descend, push, retreat, clear view; in this order. If the jaws stand low over the
+            table, an approach that lifts them comes first.
         opening: distance between the jaws [m].
         heading: of the jaws' closing direction in ``table`` [rad].
         branch: number of the posture it was solved from.

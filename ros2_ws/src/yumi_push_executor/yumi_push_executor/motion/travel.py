@@ -32,6 +32,11 @@ class Travel:
         self._arm, self._checker, self._parameters = arm, checker, parameters
         self._cell, self._pose = cell, cell.body_from_table
 
+    @property
+    def checked(self) -> int:
+        """Postures checked so far."""
+        return self._checker.checked
+
     def move(self, start: FloatArray, end: FloatArray, stage: Stage, where: str) -> Trajectory:
         """Straight in joint space.
 
