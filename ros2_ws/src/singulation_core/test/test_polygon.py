@@ -94,7 +94,7 @@ def test_malformed_outlines_are_refused_by_name(points, text):
     assert len(validated_outline(SQUARE)) == 4
 
 
-@given(st.lists(st.tuples(NUMBER, NUMBER), min_size=3, max_size=30, unique=True))
+@given(st.lists(st.tuples(st.integers(-50, 50), st.integers(-50, 50)), min_size=3, max_size=30, unique=True))
 def test_hull_is_convex_and_contains_its_points(points):
     hull = convex_hull(points)
     assume(len(hull) >= 3 and signed_area(hull) > 1e-3)

@@ -1,10 +1,10 @@
-"""How far a pusher can go before it touches a block."""
+"""Where a pusher stands, and how far it can go before it touches a block."""
 
 import numpy as np
 import pymunk
 
-from singulation_core.polygon import FloatArray
-from singulation_core.push_world.space import BLOCKS_ONLY
+from singulation_core.polygon import FloatArray, separation
+from singulation_core.push_world.space import BLOCKS_ONLY, corners
 from singulation_core.push_world.sweep import free_travel
 
 
@@ -16,7 +16,7 @@ def free_share(space: pymunk.Space, pusher: pymunk.Body, way: FloatArray) -> flo
         if isinstance(shape, pymunk.Circle):
             ways.append(length * _disc_share(space, pusher.local_to_world(shape.offset), shape.radius, way))
         elif isinstance(shape, pymunk.Poly):
-            ways.append(free_travel(_corners(shape, pusher), _in_the_way(space, shape, way), way / length))
+            ways.append(free_travel(_outline(shape), _in_the_way(space, shape, way), way / length))
     return max(0.0, min(ways)) / length
 
 
@@ -25,13 +25,26 @@ def _disc_share(space: pymunk.Space, centre: pymunk.Vec2d, radius: float, way: F
     return 1.0 if hit is None else hit.alpha
 
 
-def _corners(shape: pymunk.Poly, body: pymunk.Body) -> FloatArray:
-    return np.array([body.local_to_world(vertex) for vertex in shape.get_vertices()])
-
-
 def _in_the_way(space: pymunk.Space, shape: pymunk.Poly, way: FloatArray) -> list[FloatArray]:
     """Outlines of the blocks near enough to be met."""
     here, (x, y) = shape.cache_bb(), way.tolist()
     swept = here.merge(pymunk.BB(here.left + x, here.bottom + y, here.right + x, here.top + y))
     near = space.bb_query(swept, BLOCKS_ONLY)
-    return [_corners(one, one.body) for one in near if isinstance(one, pymunk.Poly) and one.body is not None]
+    return [_outline(one) for one in near if isinstance(one, pymunk.Poly)]
+
+
+def standing_on(space: pymunk.Space, shape: pymunk.Shape, tolerance: float) -> list[pymunk.Shape]:
+    """Shapes in the space that overlap a pusher's shape by more than ``tolerance``."""
+    found = []
+    for hit in space.shape_query(shape):
+        depth = min(point.distance for point in hit.contact_point_set.points)
+        if isinstance(shape, pymunk.Poly) and isinstance(hit.shape, pymunk.Poly) and depth < -tolerance:
+            # Chipmunk's depth cannot be trusted where corners touch corners.
+            depth = separation(_outline(shape), _outline(hit.shape))
+        if hit.shape is not None and depth < -tolerance:
+            found.append(hit.shape)
+    return found
+
+
+def _outline(shape: pymunk.Poly) -> FloatArray:
+    return corners(shape, shape.body) if shape.body is not None else np.empty((0, 2))

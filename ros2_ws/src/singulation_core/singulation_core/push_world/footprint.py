@@ -62,8 +62,8 @@ class Footprint:
 def pusher_footprint(push: Push, pusher: PusherGeometry) -> Footprint:
     """The jaws of a push; the origin of the footprint moves from ``push.start`` to ``push.end``.
 
-    Single point: a disc around the origin. Edge: a rectangle ``contact_width`` wide, the middle of its front edge at the
-    origin. Two points: two discs, their centres ``contact_width`` apart, the origin in the middle.
+    Single point: a disc around the origin. Edge: a rectangle ``contact_width`` wide, the middle of its front edge at
+    the origin. Two points: two discs, their centres ``contact_width`` apart, the origin in the middle.
     """
     return _jaws(push.contact_mode, push.contact_width, pusher)
 

@@ -26,7 +26,7 @@ class PushPhysics:
         iterations: of the contact solver in each step.
         velocity_kept: share of a block's velocity that survives a step.
         seconds_per_step: only matters when velocity is kept.
-        settle_steps: after the pusher stopped, in which overlaps of the last steps heal.
+        settle_steps: after the pusher stopped, in which overlaps of the last steps heal; none if velocity is kept.
         total_steps: steps of one push, the pusher's own included; the rest of them is coasting.
         slop: overlap that is left alone.
         overlap_correction: share of a deeper overlap that is taken away per step.

@@ -132,9 +132,12 @@ def _perform(world: PushWorld, push: Push, pusher: PusherGeometry) -> None:
     end = (*push.end, heading)
     if world.physics.velocity_kept == 0.0:
         world.approach(_PUSHER, end)
-    world.move({_PUSHER: end})
-    own_steps = math.ceil(push.length / world.unit / world.physics.step - 1e-9)
-    world.wait(max(world.physics.total_steps - own_steps, world.physics.settle_steps))
+        world.move({_PUSHER: end})
+        world.settle()
+    else:
+        world.move({_PUSHER: end})
+        own_steps = math.ceil(push.length / world.unit / world.physics.step - 1e-9)
+        world.wait(max(world.physics.total_steps - own_steps, 0))
 
 
 def _log_distances(points: FloatArray, first: NDArray[np.intp], second: NDArray[np.intp], floor: float) -> FloatArray:

@@ -68,6 +68,11 @@ def pusher_body(footprint: Footprint, unit: float, physics: PushPhysics) -> tupl
     return body, shapes
 
 
+def corners(shape: pymunk.Poly, body: pymunk.Body) -> FloatArray:
+    """(k, 2) vertices in the space, counter-clockwise."""
+    return np.array([body.local_to_world(vertex) for vertex in shape.get_vertices()])
+
+
 def contact_friction(physics: PushPhysics) -> float:
     """Chipmunk multiplies the coefficients of the two shapes in a contact."""
     return math.sqrt(physics.friction)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from singulation_core.arrangement import Arrangement
 from singulation_core.errors import InvalidInputError, SingulationError
 from singulation_core.polygon import FloatArray
-from singulation_core.push_world.approach import free_share
+from singulation_core.push_world.approach import free_share, standing_on
 from singulation_core.push_world.displaced import displaced
 from singulation_core.push_world.footprint import Footprint
 from singulation_core.push_world.overlap import part_overlapping
@@ -20,6 +20,7 @@ from singulation_core.push_world.space import add_blocks, block_poses, new_space
 from singulation_core.result_code import ResultCode
 
 _FAR_AWAY = np.array((1e5, 1e5, 0.0))  # inner units
+_HEALED = 0.8  # share of an overlap that a step of settling takes away
 _TOUCHING = 0.01  # overlap of pusher and block that still counts as touching [mean bounding radii]
 
 
@@ -77,27 +78,23 @@ class PushWorld:
             self._parked.add(name)
         if frame is not None:
             self._frame = frame
+        self._space.collision_persistence = 0  # the next step drops every contact, and moves nothing
+        self._space.step(1e-300)
+        self._space.collision_persistence = 3
         places = self._frame.inner(self._initial.centroids).tolist()
         for (_, body, _), (x, y) in zip(self._blocks, places, strict=True):
             body.position = x, y
             body.angle = -self._frame.heading
             body.velocity = 0.0, 0.0
             body.angular_velocity = 0.0
-        self._space.collision_persistence = 0  # the next step drops every contact, and moves nothing
-        self._space.step(1e-300)
-        self._space.collision_persistence = 3
+            self._space.reindex_shapes_for_body(body)
 
     def covered(self, footprint: Footprint, pose: ArrayLike) -> list[int]:
         """Ids of the blocks that the footprint at this pose overlaps (touching does not count)."""
         body, shapes = pusher_body(footprint, self.unit, self.physics)
         _set_pose(body, self._inner_pose(pose))
-        hits = [hit for shape in shapes for hit in self._space.shape_query(shape)]
-        deep = {
-            hit.shape
-            for hit in hits
-            if hit.shape is not None and any(point.distance < -_TOUCHING for point in hit.contact_point_set.points)
-        }
-        return [block.id for block in self._blocks if block.shape in deep]
+        below = {block for shape in shapes for block in standing_on(self._space, shape, _TOUCHING)}
+        return [block.id for block in self._blocks if block.shape in below]
 
     def place(self, name: str, footprint: Footprint, pose: ArrayLike) -> None:
         """Let a pusher down at x, y [m], heading [rad].
@@ -158,15 +155,23 @@ class PushWorld:
         length = float(np.hypot(way[0], way[1]))
         if length > 0.0:
             # Half a slop further is a contact that the first step sees, and too shallow to be corrected.
-            share = min(free_share(self._space, body, way) + 0.5 * self.physics.slop / length, 1.0)
+            share = min(free_share(self._space, body, way) + max(0.5 * self.physics.slop, 1e-7) / length, 1.0)
             x, y = (share * way).tolist()
             body.position = body.position + (x, y)
 
     def wait(self, steps: int) -> None:
-        """Let ``steps`` steps pass while no pusher moves: blocks coast (if they do), small overlaps heal."""
+        """Let ``steps`` steps pass while no pusher moves: blocks coast, if they do."""
         for _ in range(steps):
             self._rest()
             self._space.step(self.physics.seconds_per_step)
+
+    def settle(self) -> None:
+        """Heal overlaps that the last steps of a push left, faster than a moving pusher would allow."""
+        usual, self._space.collision_bias = self._space.collision_bias, 1.0 - _HEALED
+        for _ in range(self.physics.settle_steps):
+            self._rest()
+            self._space.step(1.0)
+        self._space.collision_bias = usual
 
     def poses(self) -> FloatArray:
         """(n, 3) x, y [m] of the centroids and the turn since the beginning [rad], in the order of the arrangement."""
