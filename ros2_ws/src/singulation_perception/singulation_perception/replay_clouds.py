@@ -56,7 +56,7 @@ class ReplayNode(Node):
         if options.step:
             self.create_service(Trigger, "~/step", self._step)
         if options.clock:
-            self._clock = self.create_publisher(Clock, "/clock", 10)
+            self._clock_time = self.create_publisher(Clock, "/clock", 10)
             self.create_timer(_CLOCK_PERIOD, self._tick)
 
     def wait_for_subscriber(self) -> None:
@@ -132,7 +132,7 @@ class ReplayNode(Node):
     def _tick(self) -> None:
         position = self._rhythm.recorded_at(time.monotonic())
         if position is not None:
-            self._clock.publish(Clock(clock=_time(position)))
+            self._clock_time.publish(Clock(clock=_time(position)))
 
     @guarded_service
     def _step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

@@ -1,0 +1,51 @@
+"""The receiving process: ``python -m benchmarks.transport.processes SETTINGS RECEIVER [ROS ARGUMENTS]``."""
+
+import os
+import sys
+from typing import Any
+
+from rclpy.node import Node
+from sensor_msgs.msg import PointCloud2
+from singulation_msgs.msg import Arrangement
+from std_msgs.msg import Header
+
+from singulation_node.large_messages import PROFILE, PROFILE_VARIABLE, prepare_for_large_messages
+from singulation_node.main import run_node
+from singulation_node.qos import SENSOR_IN, STATE
+from singulation_perception.perception_node import PerceptionNode
+
+INSTALLED, PROFILE_ONLY, SHIPPED = "as installed", "transport profile", "profile and kept memory"
+SETTINGS = (INSTALLED, PROFILE_ONLY, SHIPPED)
+ECHO, PERCEPTION = "echo", "perception_node"
+
+
+def apply(settings: str) -> None:
+    """Prepare this process; before rclpy.init."""
+    os.environ.pop(PROFILE_VARIABLE, None)
+    if settings == PROFILE_ONLY:
+        os.environ[PROFILE_VARIABLE] = str(PROFILE)
+    elif settings == SHIPPED and not prepare_for_large_messages():
+        raise SystemExit("not enough shared memory for the measurement")
+
+
+class Echo(Node):
+    """Answers each cloud with an empty arrangement of its stamp: what is left without the segmentation."""
+
+    def __init__(self) -> None:
+        super().__init__("echo")
+        self._objects = self.create_publisher(Arrangement, "objects", STATE)
+        self.create_subscription(PointCloud2, "points", self._answer, SENSOR_IN)
+
+    def _answer(self, cloud: Any) -> None:
+        self._objects.publish(Arrangement(header=Header(stamp=cloud.header.stamp, frame_id="table")))
+
+
+def main() -> int:
+    """Run the receiver."""
+    settings, receiver, *rest = sys.argv[1:]
+    apply(settings)
+    return run_node(Echo if receiver == ECHO else PerceptionNode, [sys.argv[0], "--autostart", *rest])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
