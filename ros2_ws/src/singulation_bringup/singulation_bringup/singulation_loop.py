@@ -140,7 +140,7 @@ class SingulationLoop:
         while True:
             gap, pushes = self._progress.gaps[-1], len(self._progress.outcomes)
             if gap >= self._goal.min_gap:
-                return ResultCode.OK, _separated(len(seen), gap, pushes)
+                return self._end(len(seen), gap, pushes)
             if pushes >= self._goal.max_pushes:
                 return ResultCode.MAX_PUSHES_REACHED, (
                     f"smallest gap {1e3 * gap:.1f} mm after {pushes} pushes, need {1e3 * self._goal.min_gap:.1f} mm"
@@ -156,6 +156,11 @@ class SingulationLoop:
                 raise SingulationError(
                     ResultCode.PUSH_FAILED, f"{failures} pushes in a row failed, the last: {failure}"
                 )
+
+    def _end(self, count: int, gap: float, pushes: int) -> tuple[ResultCode, str]:
+        """Everything seen is separated; a block that is not seen may hide in another one's outline."""
+        code = ResultCode.OBJECT_LOST if self._progress.lost else ResultCode.OK
+        return code, _separated(count, gap, pushes)
 
     def _look(self) -> tuple[Arrangement, Tracked]:
         self._cell.check_cancelled()

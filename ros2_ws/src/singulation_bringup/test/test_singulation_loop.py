@@ -130,5 +130,14 @@ def test_a_block_that_vanishes_is_named():
     looks = iter([row(0.001, 3), row(0.05, 2)])
     cell.look = lambda: next(looks)
     result, _ = run(cell)
-    assert result.code is ResultCode.OK
+    assert result.code is ResultCode.OBJECT_LOST
     assert "blocks [1] are no longer seen" in result.message
+
+
+def test_a_block_that_is_seen_again_is_not_lost():
+    cell = ScriptedCell(count=3)
+    looks = iter([row(0.001, 3), row(0.002, 2), row(0.05, 3)])
+    cell.look = lambda: next(looks)
+    result, _ = run(cell)
+    assert result.code is ResultCode.OK
+    assert "no longer" not in result.message
