@@ -81,10 +81,3 @@ def contact_friction(physics: PushPhysics) -> float:
 def block_poses(blocks: list[Block]) -> FloatArray:
     """(n, 3) x, y, angle of the blocks."""
     return np.array([(*block.body.position, block.body.angle) for block in blocks], dtype=np.float64).reshape(-1, 3)
-
-
-def smallest_width(outline: FloatArray) -> float:
-    """Smallest extent of a convex polygon over all directions (it occurs across one of its edges)."""
-    edges = np.roll(outline, -1, axis=0) - outline
-    normals = np.stack((-edges[:, 1], edges[:, 0]), axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
-    return float(np.ptp(outline @ normals.T, axis=0).min())

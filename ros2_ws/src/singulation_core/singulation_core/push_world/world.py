@@ -16,7 +16,7 @@ from singulation_core.push_world.footprint import Footprint
 from singulation_core.push_world.overlap import part_overlapping
 from singulation_core.push_world.physics import PushPhysics
 from singulation_core.push_world.plane_frame import PlaneFrame
-from singulation_core.push_world.space import add_blocks, block_poses, new_space, pusher_body, smallest_width
+from singulation_core.push_world.space import add_blocks, block_poses, new_space, pusher_body
 from singulation_core.result_code import ResultCode
 
 _FAR_AWAY = np.array((1e5, 1e5, 0.0))  # inner units
@@ -62,7 +62,9 @@ class PushWorld:
         self._blocks = add_blocks(self._space, arrangement, self.unit, self.physics)
         self._pushers: dict[str, tuple[pymunk.Body, Footprint]] = {}
         self._parked: set[str] = set()  # lifted by restore, and still part of the space for the next time
-        self._block_width = min((smallest_width(item.outline) for item in arrangement.objects), default=math.inf)
+        # No convex block is thinner than its area over its diameter.
+        thinness = (0.5 * item.area / item.bounding_radius for item in arrangement.objects)
+        self._block_width = min(thinness, default=math.inf)
         middle = arrangement.centroids.mean(axis=0) if len(arrangement) else np.zeros(2)
         self.restore(frame or PlaneFrame(middle, 0.0, self.unit))
         part_overlapping(self._space, self._blocks, self.physics.slop)
@@ -169,7 +171,6 @@ class PushWorld:
         """Heal overlaps that the last steps of a push left, faster than a moving pusher would allow."""
         usual, self._space.collision_bias = self._space.collision_bias, 1.0 - _HEALED
         for _ in range(self.physics.settle_steps):
-            self._rest()
             self._space.step(1.0)
         self._space.collision_bias = usual
 
