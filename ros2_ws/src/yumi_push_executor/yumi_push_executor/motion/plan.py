@@ -1,6 +1,7 @@
 """From a push to a checked motion of one arm, or an error that says what is in the way."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -127,12 +128,11 @@ def _solve_all(
         raise InvalidInputError("arms: none allowed, need at least one")
     solved: list[Lines] = []
     refusals: list[SingulationError] = []
-    for name in arms:
-        for branch in range(len(BRANCHES)):
-            try:
-                solved.append(solve_lines(YumiArm(name), branch, push, cell.body_from_table, height, parameters))
-            except SingulationError as refusal:
-                refusals.append(refusal)
+    for arm, branch in product([YumiArm(name) for name in arms], range(len(BRANCHES))):
+        try:
+            solved.append(solve_lines(arm, branch, push, cell.body_from_table, height, parameters))
+        except SingulationError as refusal:
+            refusals.append(refusal)
     return solved, refusals
 
 

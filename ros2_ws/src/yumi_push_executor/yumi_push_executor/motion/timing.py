@@ -9,6 +9,7 @@ from yumi_push_executor.motion.trapezoid import Trapezoid
 from yumi_push_executor.supervision.trajectory import Trajectory
 
 KNOT_STEP = 0.05  # [s] between the points of a trajectory
+_SAMPLED = 1.01  # the fastest moment of the tips may lie between two samples
 
 
 def peaks(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
@@ -62,7 +63,7 @@ def joint_move(arm: YumiArm, start: FloatArray, end: FloatArray, parameters: Mot
     size = np.abs(way)
     if not (size.max() > 1e-9):
         return Trajectory(np.zeros(1), start[None], np.zeros((1, 7)))
-    tip_way = arm.tip_way(start, end)
+    tip_way = _SAMPLED * arm.tip_way(start, end)
     with np.errstate(divide="ignore"):
         speed = float((parameters.velocity_share * arm.velocity / size).min())
         acceleration = float((np.array(parameters.joint_acceleration) / size).min())

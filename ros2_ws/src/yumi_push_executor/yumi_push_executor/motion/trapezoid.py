@@ -63,10 +63,10 @@ class Trapezoid:
 
         Between two of them the acceleration is constant, so that a cubic through them is exact.
         """
-        ends = (0.0, self.ramp, self.duration - self.ramp, self.duration)
+        ends = [0.0, self.ramp, self.duration - self.ramp, self.duration]
+        if ends[2] - ends[1] <= 1e-9 * self.duration:  # no cruising
+            del ends[2]
         parts = [
-            np.linspace(start, end, math.ceil((end - start) / step), endpoint=False)
-            for start, end in pairwise(ends)
-            if end - start > 1e-6 * self.duration
+            np.linspace(start, end, math.ceil((end - start) / step), endpoint=False) for start, end in pairwise(ends)
         ]
         return np.concatenate((*parts, (self.duration,)))
