@@ -14,6 +14,7 @@ from yumi_push_executor.clearance import build_scene, parts_in_view
 from yumi_push_executor.clearance.shapes import Kind
 from yumi_push_executor.kinematics import CLEAR_VIEW, TIP_OFFSET
 from yumi_push_executor.kinematics.model import arm_model, robot
+from yumi_push_executor.motion.jaws import middle_line
 from yumi_push_executor.motion.table import swept_blocks
 from yumi_push_executor.supervision.segment import Phase
 
@@ -107,11 +108,8 @@ def _tips(
         figures.violations.append(f"{phase.name}: tips at {fastest:.3f} m/s")
     if phase not in (Phase.DESCEND, Phase.PUSH, Phase.RETREAT):
         return
-    pose = cell.body_from_table
-    start, end = (
-        pose[:3, :2] @ point + pose[:3, 3] + p.tip_height * pose[:3, 2]
-        for point in (motion.push.start, motion.push.end)
-    )
+    pose, line = cell.body_from_table, middle_line(motion.push, PusherGeometry())
+    start, end = (pose[:3, :2] @ point + pose[:3, 3] + p.tip_height * pose[:3, 2] for point in (line.start, line.end))
     origin, direction = {
         Phase.DESCEND: (start, pose[:3, 2]),
         Phase.PUSH: (start, (end - start) / motion.push.length),

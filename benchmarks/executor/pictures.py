@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 from benchmarks.executor.drawing import Moment, save_animation, save_strip
 
-from singulation_core import Arrangement, CellGeometry, ContactMode, PlanarObject, Push
+from singulation_core import Arrangement, CellGeometry, ContactMode, PlanarObject, Push, PusherGeometry
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world import simulate_push
 from yumi_push_executor import Motion, YumiArm, plan_motion
 from yumi_push_executor.kinematics import CLEAR_VIEW
 from yumi_push_executor.kinematics.model import ARMS
+from yumi_push_executor.motion.jaws import middle_line
 from yumi_push_executor.supervision.segment import Phase
 
 _RATE = 8  # frames per second
@@ -74,7 +75,7 @@ def _blocks(motion: Motion, blocks: Arrangement, phase: Phase, q: FloatArray) ->
     push = motion.push
     if phase is Phase.PUSH:
         tip = _tip_in_table(motion.arm, q)
-        gone = float((tip - push.start) @ push.direction)
+        gone = float((tip - middle_line(push, PusherGeometry()).start) @ push.direction)
         if not (gone > 1e-4):
             return blocks
         push = Push(push.start, push.start + gone * push.direction, push.contact_mode, push.contact_width)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from singulation_core import ContactMode, Push, PusherGeometry
 from singulation_core.transforms import pose_matrix
-from yumi_push_executor.motion.jaws import headings, opening, tool_pose
+from yumi_push_executor.motion.jaws import headings, middle_line, opening, tool_pose
 
 ANGLES = st.floats(-7.0, 7.0)
 
@@ -37,6 +37,15 @@ def test_only_two_points_open_the_jaws(width, angle):
     assert opening(push(ContactMode.TWO_POINT, angle, width), PusherGeometry()) == width
     assert opening(push(ContactMode.SINGLE_POINT, angle, 0.0), PusherGeometry()) == 0.0
     assert opening(push(ContactMode.EDGE, angle, min(width, 0.0124)), PusherGeometry()) == 0.0
+
+
+@given(st.sampled_from(list(ContactMode)), ANGLES)
+def test_the_front_of_the_jaws_is_where_an_edge_push_starts(mode, angle):
+    asked = push(mode, angle, 0.0 if mode is ContactMode.SINGLE_POINT else 0.0124)
+    line, along = middle_line(asked, PusherGeometry()), asked.direction
+    behind = 0.006 if mode is ContactMode.EDGE else 0.0
+    np.testing.assert_allclose(line.start + behind * along, asked.start, atol=1e-12)
+    np.testing.assert_allclose(line.end - line.start, asked.end - asked.start, atol=1e-12)
 
 
 @given(st.tuples(st.floats(-0.2, 0.2), st.floats(-0.2, 0.2)), st.floats(0.0, 0.2), ANGLES, ANGLES)

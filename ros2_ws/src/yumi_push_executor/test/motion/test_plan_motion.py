@@ -10,6 +10,7 @@ from singulation_core import Arrangement, CellGeometry, ContactMode, Push, Pushe
 from yumi_push_executor import MotionParameters, YumiArm, plan_motion
 from yumi_push_executor.clearance import parts_in_view
 from yumi_push_executor.kinematics import CLEAR_VIEW
+from yumi_push_executor.motion.jaws import middle_line
 from yumi_push_executor.supervision import Phase
 
 ORDER = [Phase.GRIPPER, Phase.APPROACH, Phase.DESCEND, Phase.PUSH, Phase.RETREAT, Phase.CLEAR_VIEW]
@@ -39,7 +40,7 @@ def check_joints(motion):
 
 
 def check_lines(motion):
-    push, high, low = motion.push, PARAMETERS.travel_height, PARAMETERS.tip_height
+    push, high, low = middle_line(motion.push, PUSHER), PARAMETERS.travel_height, PARAMETERS.tip_height
     start, end, up = in_body(push.start, low), in_body(push.end, low), np.array((0.0, 0.0, 1.0))
     along = (end - start) / push.length
     expected = {Phase.DESCEND: (start, up), Phase.PUSH: (start, along), Phase.RETREAT: (end, up)}

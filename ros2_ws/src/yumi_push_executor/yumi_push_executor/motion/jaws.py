@@ -1,5 +1,7 @@
 """How the jaws stand for a push: opening and the headings at which they touch as the contact mode asks."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from singulation_core import ContactMode, Push, PusherGeometry, ResultCode, SingulationError
@@ -30,6 +32,14 @@ def opening(push: Push, pusher: PusherGeometry) -> float:
             f"{MAX_OPENING * 1e3:.0f} mm",
         )
     return push.contact_width
+
+
+def middle_line(push: Push, pusher: PusherGeometry) -> Push:
+    """The way of the point midway between the tips: P and Q of an edge push are on the jaws' front side."""
+    if push.contact_mode is not ContactMode.EDGE:
+        return push
+    back = 0.5 * pusher.edge_thickness * push.direction
+    return replace(push, start=push.start - back, end=push.end - back)
 
 
 def headings(push: Push) -> FloatArray:

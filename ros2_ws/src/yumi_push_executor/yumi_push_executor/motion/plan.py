@@ -21,7 +21,7 @@ from yumi_push_executor.kinematics import BRANCHES, CLEAR_VIEW, YumiArm
 from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.motion.candidates import Candidate, ranked
 from yumi_push_executor.motion.complete import complete, leave_view
-from yumi_push_executor.motion.jaws import headings, opening
+from yumi_push_executor.motion.jaws import headings, middle_line, opening
 from yumi_push_executor.motion.lines import Lines, solve_lines
 from yumi_push_executor.motion.motion import Motion
 from yumi_push_executor.motion.parameters import MotionParameters
@@ -68,7 +68,8 @@ def plan_motion(
     parameters, arrangement = parameters or MotionParameters(), arrangement or _NO_BLOCKS
     require_inside(push, cell)
     width, postures = opening(push, pusher), _postures(joints)
-    solved, refusals = _solve_all(push, cell, travel_height(arrangement, parameters), parameters, arms)
+    line = middle_line(push, pusher)
+    solved, refusals = _solve_all(line, cell, travel_height(arrangement, parameters), parameters, arms)
     candidates = ranked(solved, headings(push), postures, parameters)
     shift, touched = push.end - push.start, swept_blocks(push, arrangement, pusher)
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from singulation_core import Arrangement, CellGeometry, Push, PusherGeometry, ResultCode, SingulationError
 from singulation_core.polygon import contains, convex_hull, inward_half_planes, separation
+from yumi_push_executor.motion.jaws import middle_line
 from yumi_push_executor.motion.parameters import MotionParameters
 
 _ON_THE_EDGE = 1e-6  # [m] that rounding may put an end outside
@@ -33,7 +34,8 @@ def swept_blocks(push: Push, arrangement: Arrangement, pusher: PusherGeometry) -
     reach = float(np.hypot(pusher.edge_width, pusher.edge_thickness)) / 2.0
     across = np.array((-push.direction[1], push.direction[0])) * (reach + 0.5 * push.contact_width)
     along = push.direction * reach
-    corners = [push.start - along, push.end + along]
+    line = middle_line(push, pusher)
+    corners = [line.start - along, line.end + along]
     swept = convex_hull([corner + side for corner in corners for side in (across, -across)])
     return frozenset(item.id for item in arrangement.objects if separation(swept, item.outline) <= 0.0)
 
