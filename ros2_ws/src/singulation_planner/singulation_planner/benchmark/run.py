@@ -1,6 +1,7 @@
 """Which scenes a run consists of, and running what is not known yet."""
 
 import math
+import random
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -74,8 +75,13 @@ class Plan:
     def _generated(self) -> list[tuple[int, int, int, SceneRecipe | Scenario]]:
         each = math.ceil(self.scenarios / (len(self.counts) * len(groups())))
         generator = self.setting.generator
-        cells = [(rank, n, group) for rank in range(each) for n in self.counts for group in groups()]
-        return [(n, g, rank, SceneRecipe(generator, n, g, self.first_seed + rank)) for rank, n, g in cells]
+        cells = [(n, group) for n in self.counts for group in groups()]
+        order = random.Random(0)
+        scenes: list[tuple[int, int, int, SceneRecipe | Scenario]] = []
+        for rank in range(each):
+            order.shuffle(cells)  # large and small scenes mixed, so that the time left can be told
+            scenes += [(n, group, rank, SceneRecipe(generator, n, group, self.first_seed + rank)) for n, group in cells]
+        return scenes
 
     def _from_file(self) -> list[tuple[int, int, int, SceneRecipe | Scenario]]:
         if self.file is None:
@@ -124,4 +130,11 @@ def _unknown(task: SceneTask, known: set[tuple[str, str, str, str]]) -> SceneTas
 
 
 def _product(policies: Iterable[str], modes: Sequence[str], fits: Sequence[str]) -> list[tuple[str, str, str]]:
-    return [(policy, mode, fit) for policy in policies for mode in modes for fit in fits]
+    """All combinations that mean something: the best of three modes is chosen among modes that fit for themselves."""
+    return [
+        (policy, mode, fit)
+        for policy in policies
+        for mode in modes
+        for fit in fits
+        if mode != BEST_MODE or fit == "contact_mode"
+    ]
