@@ -76,8 +76,7 @@ def _row(scene: Scene, settings: str, receiver: str, repeats: int) -> Row:
             sending = _start("sender", environment, settings, str(path), str(repeats), output=subprocess.PIPE)
             seen = json.loads(sending.communicate(timeout=_LIMIT)[0])
         finally:
-            receiving.send_signal(signal.SIGINT)
-            receiving.wait(timeout=30.0)
+            _stop(receiving)
     times = np.array(seen["times"]) if seen["times"] else np.array([np.nan])
     later = times[1:] if len(times) > 1 else times
     return Row(
@@ -94,6 +93,15 @@ def _row(scene: Scene, settings: str, receiver: str, repeats: int) -> Row:
         float(times[0]),
         seen["processor"],
     )
+
+
+def _stop(process: "subprocess.Popen[bytes]") -> None:
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(timeout=30.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait(timeout=30.0)
 
 
 def _start(

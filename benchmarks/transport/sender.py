@@ -20,7 +20,7 @@ from std_msgs.msg import Header
 from singulation_core.conversions import cloud_to_msg
 from singulation_node.qos import STATE
 
-_START = 60.0  # s for the receiver to come up
+_START = 240.0  # s for the receiver to come up; the first time it compiles
 _ANSWER = 2.0  # s, after which a cloud is lost
 _PAUSE = 0.1  # s
 

@@ -20,6 +20,7 @@ setup(
     entry_points={
         "console_scripts": [
             "perception_node = singulation_perception.perception_node:main",
+            "record_clouds = singulation_perception.record_clouds:main",
             "replay_clouds = singulation_perception.replay_clouds:main",
         ]
     },

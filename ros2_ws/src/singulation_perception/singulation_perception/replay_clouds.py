@@ -83,7 +83,7 @@ class ReplayNode(Node):
         Raises:
             SingulationError: ``BAD_FILE`` where it turns out to be damaged.
         """
-        with StepKeys() as keys:
+        with StepKeys(self._options.step) as keys:
             if self._options.step:
                 how = "press a key (q ends) or call" if keys.available else "call"
                 self._say(f"one cloud at a time: {how} {self.get_fully_qualified_name()}/step")

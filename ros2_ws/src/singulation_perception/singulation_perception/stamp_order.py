@@ -30,7 +30,12 @@ class StampOrder:
 
         Raises:
             SingulationError: ``STALE_INPUT``: zero, from the future, not newer than the last one, too old.
+                ``NOT_READY``: there is no time to compare with.
         """
+        if not (now > 0):
+            raise SingulationError(
+                ResultCode.NOT_READY, "the node's clock shows zero: use_sim_time is set, but nothing came on /clock yet"
+            )
         if not (stamp > 0):
             raise _stale("the stamp of the cloud is zero; the camera driver must stamp its clouds")
         ahead = (stamp - now) / _SECOND

@@ -1,7 +1,9 @@
 import os
+import pty
 import signal
 import subprocess
 import sys
+import termios
 import threading
 from contextlib import contextmanager
 
@@ -106,6 +108,29 @@ def test_one_cloud_for_each_call(ros_context, tmp_path):
             assert answer.message == f"cloud {count} is on its way"
             bench.points.wait(count)
             assert len(bench.points.messages) == count
+
+
+def test_a_key_sends_one_cloud_and_q_ends(tmp_path):
+    bag, _ = cloud_bag(tmp_path / "bag")
+    keyboard, terminal = pty.openpty()
+    command = [sys.executable, "-m", "singulation_perception.replay_clouds", str(bag), "--step", "--wait", "0"]
+    with reserved_domain() as domain:
+        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+        process = subprocess.Popen(command, env=environment, stdin=terminal, stderr=subprocess.PIPE, text=True)
+        try:
+            wait_until(lambda: "press a key (q ends)" in process.stderr.readline())
+            for number in (1, 2):
+                os.write(keyboard, b" ")
+                assert f"cloud {number} of 3" in process.stderr.readline()
+            os.write(keyboard, b"q")
+            errors = process.communicate(timeout=20)[1]
+            assert termios.tcgetattr(terminal)[3] & termios.ICANON, "the terminal was not put back"
+        finally:
+            process.kill()
+            process.wait(timeout=10)
+            os.close(terminal)
+            os.close(keyboard)
+    assert (process.returncode, errors) == (0, "")
 
 
 def test_the_clock_shows_the_time_of_the_recording(ros_context, tmp_path):

@@ -67,6 +67,14 @@ def test_age_is_judged_only_on_request():
     assert accepts(StampOrder(), NOW - 2 * SECOND, max_age=2.0)
 
 
+def test_without_a_clock_the_node_is_not_ready_and_then_it_is():
+    order = StampOrder()
+    with pytest.raises(SingulationError, match="/clock") as caught:
+        order.check(SECOND, 0, 1.0, None)
+    assert caught.value.code == ResultCode.NOT_READY
+    assert accepts(order, SECOND, now=2 * SECOND)
+
+
 @given(stamps=st.lists(st.integers(-5, 50), max_size=30))
 def test_whatever_is_accepted_is_newer_than_the_cloud_before_it(stamps):
     order = StampOrder()
