@@ -42,6 +42,6 @@ def best_of_modes(
             failure = failure or error
     if failure is not None and not pushes:
         raise failure
-    changes = simulate_pushes(scene.arrangement, pushes, physics, pusher).gains()
+    changes = simulate_pushes(scene.in_order(), pushes, physics, pusher).gains()
     best = int(np.argmax(np.nan_to_num(changes, nan=-np.inf)))
-    return replace(pushes[best], expected_gain=relative_gain(float(changes[best]), scene.arrangement))
+    return replace(pushes[best], expected_gain=relative_gain(float(changes[best]), scene.in_order()))

@@ -1,5 +1,6 @@
 """What a policy proposes: which object to push, in which direction, along which line."""
 
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -30,3 +31,17 @@ def through_centroid(objects: IntArray | int, directions: FloatArray) -> Candida
     if isinstance(objects, int):
         objects = np.full(count, objects, dtype=np.int64)
     return Candidates(objects, directions, np.zeros(count))
+
+
+def object_by_object(fans: Iterable[tuple[int, FloatArray, FloatArray]]) -> Iterator[Candidates]:
+    """The good directions of each object in turn, then, where nothing else is left, the others.
+
+    Args:
+        fans: index of the object, its good directions (k, 2) and its other ones (m, 2), best first.
+    """
+    others = []
+    for index, good, rest in fans:
+        yield through_centroid(index, good)
+        others.append((index, rest))
+    for index, rest in others:
+        yield through_centroid(index, rest)

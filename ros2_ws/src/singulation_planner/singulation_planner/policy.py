@@ -46,13 +46,15 @@ class Policy:
     Attributes:
         name: as given to ``plan_push``.
         rank: yields candidates best first.
-        options: frozen dataclass of its options with their defaults.
+        options: frozen dataclass of its options.
+        defaults: an instance of it.
         summary: first line of its docstring.
     """
 
     name: str
     rank: Rank
     options: type[Any]
+    defaults: Any
     summary: str
 
     def read_options(self, given: Mapping[str, Any]) -> Any:
@@ -61,6 +63,8 @@ class Policy:
         Raises:
             InvalidInputError: an unknown option or value; the text lists the valid ones.
         """
+        if not given:
+            return self.defaults
         kinds = get_type_hints(self.options)
         for name in given:
             if name not in kinds:
@@ -84,7 +88,7 @@ def policy(options: type[Any]) -> Callable[[Rank], Rank]:
     def register(rank: Rank) -> Rank:
         name = rank.__module__.rpartition(".")[2]
         summary = (inspect.getdoc(inspect.getmodule(rank)) or "").partition("\n")[0]
-        REGISTERED[name] = Policy(name, rank, options, summary)
+        REGISTERED[name] = Policy(name, rank, options, options(), summary)
         return rank
 
     return register

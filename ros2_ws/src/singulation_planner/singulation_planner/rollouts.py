@@ -26,7 +26,7 @@ def simulated_changes(task: Task, candidates: Candidates, chosen: IntArray, star
             candidates.objects[chosen].tolist(), starts, candidates.directions[chosen], strict=True
         )
     ]
-    outcomes = simulate_pushes(task.scene.arrangement, pushes, task.physics, task.placer.geometry)
+    outcomes = simulate_pushes(task.scene.in_order(), pushes, task.physics, task.placer.geometry)
     return np.asarray(outcomes.gains())
 
 

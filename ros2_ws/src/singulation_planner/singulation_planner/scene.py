@@ -65,6 +65,11 @@ class Scene:
     def __len__(self) -> int:
         return len(self.order)
 
+    def in_order(self) -> Arrangement:
+        """The arrangement with its objects in canonical order: simulations of it cannot depend on their numbering."""
+        objects = self.arrangement.objects
+        return Arrangement([objects[k] for k in self.order], self.arrangement.frame, self.arrangement.stamp)
+
     def object_id(self, index: int) -> int:
         """Id of the object at this place of the canonical order."""
         return self.arrangement.objects[self.order[index]].id

@@ -3,15 +3,10 @@
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_planner.directions import comparable
+from singulation_planner.directions import ascending, comparable
 from singulation_planner.kernels.scoring import distance_sums
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.scene import Scene
-
-
-def ascending(scores: FloatArray, scale: float = 1.0) -> IntArray:
-    """Order of the scores, smallest first; equal ones keep their order."""
-    return np.argsort(comparable(scores, scale), kind="stable")
 
 
 def by_connectivity(scene: Scene) -> list[int]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from singulation_core import Arrangement, PlanarObject
-from singulation_core.polygon import convex_hull, separation
+from singulation_core.polygon import FloatArray, convex_hull, separation
 
 _RADIUS = 0.02  # m
 
@@ -31,13 +31,26 @@ def clutter(count: int, seed: int, size: float = 1.0) -> Arrangement:
         item = block(len(placed), random, size)
         away = random.uniform(0.0, 2.0 * np.pi)
         way = np.array((np.cos(away), np.sin(away)))
-        for distance in np.arange(0.0, 20.0, 0.1) * _RADIUS * size:
-            moved = item.moved(distance * way)
-            if all(separation(moved.outline, other.outline) > 1e-4 * size for other in placed):
-                placed.append(moved)
-                break
+        distance = _first_free(item, way, placed, 0.1 * _RADIUS * size, 1e-4 * size)
+        placed.append(item.moved(distance * way))
     middle = np.mean([item.centroid for item in placed], axis=0)
     return Arrangement([item.moved(-middle) for item in placed])
+
+
+def _first_free(item: PlanarObject, way: FloatArray, placed: list[PlanarObject], step: float, gap: float) -> float:
+    """How far along ``way`` from the origin the block first has a gap to all others [m]."""
+    distance = 0.0
+    while True:
+        outline = item.outline + distance * way
+        reach = [item.bounding_radius + other.bounding_radius + gap for other in placed]
+        near = [
+            other
+            for other, limit in zip(placed, reach, strict=True)
+            if np.hypot(*(distance * way - other.centroid)) < limit
+        ]
+        if all(separation(outline, other.outline) > gap for other in near):
+            return distance
+        distance += step
 
 
 def squares(centres: Sequence[tuple[float, float]], half: float = 0.01) -> Arrangement:

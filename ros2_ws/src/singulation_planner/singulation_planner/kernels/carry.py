@@ -5,14 +5,13 @@ from numba import njit
 
 from singulation_core.polygon import FloatArray
 
-
 _INWARDS = 0.5  # share of its way by which an object that may stick out already has to move inwards
 _SPREAD = np.deg2rad(30.0)  # between the line of centres and the direction in which one block moves another
 
 
 @njit(cache=True)
 def _stays(normals: FloatArray, limits: FloatArray, x: float, y: float, radius: float, mx: float, my: float) -> bool:
-    """Whether a disc moved by (mx, my) is inside afterwards, or else was brought well away from the edge in question."""
+    """Whether a disc moved by (mx, my) ends inside, or else was brought well away from the edge in question."""
     for k in range(len(limits)):
         inward = normals[k, 0] * mx + normals[k, 1] * my
         depth = (x + mx) * normals[k, 0] + (y + my) * normals[k, 1] - limits[k]

@@ -51,7 +51,8 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
     order = np.argsort(-np.nan_to_num(changes, nan=-np.inf), kind="stable")
     order = order[np.isfinite(changes[order])]
     best = chosen[order]
-    gains = np.array([relative_gain(change, scene.arrangement) for change in changes[order].tolist()])
+    ordered = scene.in_order()
+    gains = np.array([relative_gain(change, ordered) for change in changes[order].tolist()])
     yield Candidates(candidates.objects[best], candidates.directions[best], candidates.offsets[best], gains)
 
 

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_planner.candidates import Candidates, through_centroid
-from singulation_planner.directions import COUNT, around, away, nearest_first, unit
+from singulation_planner.candidates import Candidates, object_by_object
+from singulation_planner.directions import COUNT, around, ascending, away, unit
 from singulation_planner.policy import Task, policy
 from singulation_planner.scene import Scene
 from singulation_planner.selection import by_removal
@@ -31,19 +31,19 @@ class Options:
 @policy(Options)
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
     """Objects by the gain of their removal; for each the directions nearest to the wanted one."""
-    scene = task.scene
-    fans = []
+    return object_by_object(_fans(task.scene, options))
+
+
+def _fans(scene: Scene, options: Options) -> Iterator[tuple[int, FloatArray, FloatArray]]:
     for index in by_removal(scene):
-        fans.append((index, around(_away_from_segment(scene, index, options))))
-        yield through_centroid(index, fans[-1][1][:_FORWARD])
-    for index, directions in fans:
-        yield through_centroid(index, directions[_FORWARD:])
+        directions = around(_away_from_segment(scene, index, options))
+        yield index, directions[:_FORWARD], directions[_FORWARD:]
 
 
 def _away_from_segment(scene: Scene, index: int, options: Options) -> FloatArray:
     """(2,) unit vector; where the object lies on the segment, the side away from all others decides."""
     offsets = np.delete(scene.centroids, index, axis=0) - scene.centroids[index]
-    nearest = offsets[nearest_first(offsets, scene)[:2]]
+    nearest = offsets[ascending(np.hypot(offsets[:, 0], offsets[:, 1]), scene.scale)[:2]]
     general = away(scene, index)
     segment = None if len(nearest) < 2 else unit(nearest[1] - nearest[0], scene)
     if segment is None:

@@ -15,7 +15,6 @@ from singulation_planner.scene import Scene
 from singulation_planner.selection import cluster_centres, clusters_around_seeds
 
 _FAR = 4.0  # mean bounding radii; space beyond does not make a direction freer
-_OUTWARDS = COUNT // 2 + 1  # directions within a right angle of the outward one
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +39,7 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
     outward, distances = _outward(scene, options)
     nearness = comparable(distances, scene.scale) * (1.0 if options.equally_free == "nearest" else -1.0)
     fans = np.array([around(direction) for direction in outward])
-    for deviation in range(_OUTWARDS):
+    for deviation in range(COUNT):
         directions = np.ascontiguousarray(fans[:, deviation])
         order = np.lexsort((nearness, -comparable(_free(scene, directions), scene.scale)))
         yield through_centroid(order, directions[order])

@@ -34,10 +34,9 @@ class Options:
 @policy(Options)
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
     """Objects by the gain of their removal; for each the 16 directions by contact range."""
+    order = _narrowest if options.contact_range == "width" else _least_obstructed
     for index in by_removal(task.scene):
-        directions = fan(away(task.scene, index))
-        order = _narrowest if options.contact_range == "width" else _least_obstructed
-        yield through_centroid(index, order(task.scene, index, directions))
+        yield through_centroid(index, order(task.scene, index, fan(away(task.scene, index))))
 
 
 def _narrowest(scene: Scene, index: int, directions: FloatArray) -> FloatArray:

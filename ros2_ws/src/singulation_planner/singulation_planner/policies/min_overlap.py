@@ -7,10 +7,10 @@ from typing import Literal
 import numpy as np
 
 from singulation_planner.candidates import Candidates, through_centroid
-from singulation_planner.directions import away, fan
+from singulation_planner.directions import ascending, away, fan
 from singulation_planner.kernels import scoring
 from singulation_planner.policy import Task, policy
-from singulation_planner.selection import ascending, by_removal
+from singulation_planner.selection import by_removal
 
 _PATHS = {"ray": scoring.RAY, "segment": scoring.SEGMENT, "line": scoring.LINE}
 
@@ -30,11 +30,9 @@ class Options:
 @policy(Options)
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
     """Objects by the gain of their removal; for each 16 directions by the sum of distances to the others' centroids."""
-    scene = task.scene
+    scene, path = task.scene, _PATHS[options.path]
     points = np.zeros(len(scene))
     for index in by_removal(scene):
         directions = fan(away(scene, index))
-        sums = scoring.path_distance_sums(
-            scene.centroids, points, index, directions, _PATHS[options.path], task.placer.travel
-        )
+        sums = scoring.path_distance_sums(scene.centroids, points, index, directions, path, task.placer.travel)
         yield through_centroid(index, directions[ascending(-sums, scene.scale)])

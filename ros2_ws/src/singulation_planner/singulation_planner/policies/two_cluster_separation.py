@@ -6,8 +6,10 @@ from typing import Literal
 
 import numpy as np
 
-from singulation_planner.candidates import Candidates, through_centroid
+from singulation_core.polygon import FloatArray
+from singulation_planner.candidates import Candidates, object_by_object
 from singulation_planner.directions import COUNT, around, away, unit
+from singulation_planner.kernels.types import IntArray
 from singulation_planner.policy import Task, policy
 from singulation_planner.scene import Scene
 from singulation_planner.selection import by_removal, cluster_centres, clusters_around_seeds
@@ -31,20 +33,20 @@ class Options:
 @policy(Options)
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
     """One direction for each object, in the order of the reading; then the same with larger and larger deviations."""
-    scene = task.scene
+    return object_by_object(_fans(task.scene, options))
+
+
+def _fans(scene: Scene, options: Options) -> Iterator[tuple[int, FloatArray, FloatArray]]:
     labels = clusters_around_seeds(scene, 2)
     centres = cluster_centres(scene, labels)
     goals = centres[1 - labels if options.towards == "other_cluster" else labels]
-    fans = []
     for index in _order(scene, labels, options):
         wanted = unit(goals[index] - scene.centroids[index], scene)
-        fans.append((index, around(away(scene, index) if wanted is None else wanted)))
-        yield through_centroid(index, fans[-1][1][:_FORWARD])
-    for index, directions in fans:
-        yield through_centroid(index, directions[_FORWARD:])
+        directions = around(away(scene, index) if wanted is None else wanted)
+        yield index, directions[:_FORWARD], directions[_FORWARD:]
 
 
-def _order(scene: Scene, labels: np.ndarray, options: Options) -> list[int]:
+def _order(scene: Scene, labels: IntArray, options: Options) -> list[int]:
     if options.towards == "other_cluster":
         return by_removal(scene)
     centres = cluster_centres(scene, labels)
