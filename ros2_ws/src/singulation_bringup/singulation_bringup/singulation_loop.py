@@ -94,7 +94,7 @@ _TRY_ANOTHER = {
     ResultCode.START_TOO_FAR,
 }
 # The push was begun and stopped; the table may have changed, so a new look decides.
-_LOOK_AGAIN = {
+LOOK_AGAIN = {
     ResultCode.COLLISION_STOP,
     ResultCode.NO_PROGRESS,
     ResultCode.PATH_TOLERANCE,
@@ -146,7 +146,7 @@ class SingulationLoop:
                     f"smallest gap {1e3 * gap:.1f} mm after {pushes} pushes, need {1e3 * self._goal.min_gap:.1f} mm"
                 )
             push, failure = self._push(seen)
-            if failure is not None and failure.code not in _LOOK_AGAIN:
+            if failure is not None and failure.code not in LOOK_AGAIN:
                 self._record(push, failure, tracked, tracked)
                 raise failure
             before, (seen, tracked) = tracked, self._look()
