@@ -1,0 +1,1 @@
+"""Public drivers of robot, gripper and camera behind the names and messages of the suite."""

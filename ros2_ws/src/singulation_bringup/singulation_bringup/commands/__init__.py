@@ -1,0 +1,1 @@
+"""Command-line programs that look at a running cell or prepare one."""

@@ -1,0 +1,1 @@
+"""Motions that are planned and shown, never ordered."""
