@@ -33,7 +33,7 @@ class Placement:
         start: ``outline``: the pusher starts where it would touch the object, less the clearance; all of the travel
             then moves the object, and in clutter it is free more often. ``bounding_circle``: it starts at the
             object's bounding circle, as the authors' code does.
-        clearance: gap to every object at the start [m]; None: a sixth of the tip radius (1 mm for the YuMi).
+        clearance: gap to every object at the start [m]; None: a sixth of the tip radius (1.5 mm for the YuMi).
         retreat: how far a blocked start may be moved back on its line [m]. 0, the default, takes the next candidate
             instead: in the project's measurements moving back cost half of the gain.
         retreat_step: in steps of this length [m]; None: the tip radius.
