@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
+
 from singulation_core.polygon import FloatArray, area_centroid, separation
 
 

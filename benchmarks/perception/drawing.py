@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
+
 from singulation_core import Arrangement
 from singulation_core.transforms import transform_points
 from singulation_perception import Segmentation

@@ -3,10 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
-from singulation_core import Arrangement, PlanarObject
-from singulation_core.polygon import FloatArray
-
 from benchmarks.perception.blocks import (
     Block,
     corner_contact,
@@ -16,6 +12,10 @@ from benchmarks.perception.blocks import (
     touching_group,
 )
 from benchmarks.perception.sensor import Sensor, view
+from numpy.typing import NDArray
+
+from singulation_core import Arrangement, PlanarObject
+from singulation_core.polygon import FloatArray
 
 AREA = (-0.25, 0.25, -0.19, 0.19)  # the workspace of the scenes [m]
 FULL = Sensor()

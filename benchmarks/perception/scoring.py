@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+
 from singulation_core import Arrangement, PlanarObject
 from singulation_core.polygon import FloatArray, inward_half_planes, signed_area
 

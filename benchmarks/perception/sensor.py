@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from benchmarks.perception.blocks import Block
 from numpy.random import Generator
 from numpy.typing import NDArray
-from singulation_core.polygon import FloatArray, convex_hull, inward_half_planes
 
-from benchmarks.perception.blocks import Block
+from singulation_core.polygon import FloatArray, convex_hull, inward_half_planes
 
 
 @dataclass(frozen=True)

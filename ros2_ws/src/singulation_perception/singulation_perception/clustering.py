@@ -8,8 +8,8 @@ ties fall alike.
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from singulation_core import InvalidInputError
 
+from singulation_core import InvalidInputError
 from singulation_perception.grid_columns import columns_of, link_cells
 
 IntArray = NDArray[np.int32]

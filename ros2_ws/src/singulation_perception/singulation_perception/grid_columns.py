@@ -3,9 +3,9 @@
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from singulation_core import InvalidInputError
 
-from singulation_perception.union_find import find_root, numbered_roots, unite
+from singulation_core import InvalidInputError
+from singulation_perception.union_find import find_root, numbered_roots, single_sets, unite
 
 IntArray = NDArray[np.int32]
 Cloud = NDArray[np.float32]
@@ -141,14 +141,14 @@ def link_cells(
         squared: square of the tolerance, exclusive [m^2].
     """
     cell, first, cell_of_column = _cells(depth, starts)
-    parent = np.arange(len(first) - 1, dtype=np.int32)
+    parent = single_sets(len(first) - 1)
     for column in range(len(starts) - 1):
-        for a in range(cell_of_column[column], cell_of_column[column + 1]):
-            _link_within(points, depth, first, a, a + 1, cell_of_column[column + 1], parent, squared)
+        for a in range(np.int64(cell_of_column[column]), np.int64(cell_of_column[column + 1])):
+            _link_within(points, depth, first, a, a + 1, np.int64(cell_of_column[column + 1]), parent, squared)
             for j in range(neighbours.shape[1]):
                 other = neighbours[column, j]
                 if other >= 0:
-                    begin, end = cell_of_column[other], cell_of_column[other + 1]
+                    begin, end = np.int64(cell_of_column[other]), np.int64(cell_of_column[other + 1])
                     _link_within(points, depth, first, a, begin, end, parent, squared)
     numbers, _ = numbered_roots(parent)
     components = np.empty(len(points), dtype=np.int32)

@@ -1,68 +1,100 @@
-"""From the boundary of a top face to a convex polygon on the table."""
+"""From the rim of a top face to a convex polygon on the table: hull, Douglas-Peucker, edges fitted to the rim."""
 
 import cv2
 import numpy as np
-from singulation_core.polygon import FloatArray, convex_hull, cross
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+from singulation_perception.edge_fit import corners_of, refitted
+from singulation_perception.rings import Scale, hull_indices
+
+_ROUNDS = 4
+_MARGIN = 2.0  # pitches from a corner in which points may belong to the other edge
 
 
-def outline_of(boundary: FloatArray, tolerance: float, growth: float) -> FloatArray | None:
-    """Convex polygon of a face: hull, Douglas-Peucker, then edges fitted to the boundary and moved outwards.
+def outline_of(ring: FloatArray, tolerance: float, scale: Scale) -> FloatArray | None:
+    """Convex polygon of a face.
 
     Args:
-        boundary: (m, 2) points on the rim of the face, in any order [m].
-        tolerance: of Douglas-Peucker [m].
-        growth: by which edges move outwards [m].
+        ring: (m, 2) rim of the face, counter-clockwise [m].
+        tolerance: of Douglas-Peucker; no finer detail is kept [m].
+        scale: of the cloud.
 
     Returns:
         (k, 2), counter-clockwise; None if the points have no area.
     """
-    hull = convex_hull(boundary)
+    hull = ring[hull_indices(ring)]
     if len(hull) < 3:
         return None
-    origin = hull[0]  # float32 keeps micrometres only near zero
-    corners = cv2.approxPolyDP((hull - origin).astype(np.float32)[:, None, :], tolerance, True)
-    polygon = corners[:, 0, :].astype(np.float64) + origin
+    polygon = simplified(hull, tolerance)
     if len(polygon) < 3:
         return None
-    return _corners_of(*_fitted_edges(polygon, boundary, tolerance), growth, polygon)
+    corners, good = _fitted(ring, polygon, tolerance, scale)
+    return corners if good else None
 
 
-def _fitted_edges(polygon: FloatArray, boundary: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
-    """Outward unit normals and offsets of the lines through the boundary points of each edge."""
-    following = np.roll(polygon, -1, axis=0)
-    edges = following - polygon
-    lengths = np.linalg.norm(edges, axis=1)
-    along = edges / lengths[:, None]
-    normals = np.column_stack((along[:, 1], -along[:, 0]))
-    relative = boundary[:, None, :] - polygon[None, :, :]
-    position = (relative * along).sum(axis=2)
-    distance = (relative * normals).sum(axis=2)
-    margin = np.minimum(1.5 * tolerance, 0.25 * lengths)
-    near = (position > margin) & (position < lengths - margin) & (np.abs(distance) < tolerance)
-    offsets = (normals * polygon).sum(axis=1)
-    for edge in range(len(polygon)):
-        chosen = boundary[near[:, edge]]
-        if len(chosen) < 6:
-            continue
-        centre = chosen.mean(axis=0)
-        axis = np.linalg.eigh(np.cov((chosen - centre).T))[1][:, 1]
-        normal = np.array((axis[1], -axis[0]))
-        normal = normal if normal @ normals[edge] > 0.0 else -normal
-        if normal @ normals[edge] > 0.94:
-            normals[edge], offsets[edge] = normal, normal @ centre
-    return normals, offsets
+def simplified(ring: FloatArray, tolerance: float) -> FloatArray:
+    """Douglas-Peucker on a closed line, in metres."""
+    origin = ring[0]  # float32 keeps micrometres only near zero
+    corners = cv2.approxPolyDP((ring - origin).astype(np.float32)[:, None, :], tolerance, True)
+    return np.asarray(corners[:, 0, :].astype(np.float64) + origin)
 
 
-def _corners_of(normals: FloatArray, offsets: FloatArray, growth: float, fallback: FloatArray) -> FloatArray:
-    """Intersections of consecutive edges; the unrefined polygon where fitted edges do not meet in order."""
-    before_n, before_o = np.roll(normals, 1, axis=0), np.roll(offsets, 1) + growth
-    sine = cross(before_n, normals)
-    if not (sine.min() > 0.05):
-        return fallback
-    own = offsets + growth
-    x = (before_o * normals[:, 1] - own * before_n[:, 1]) / sine
-    y = (own * before_n[:, 0] - before_o * normals[:, 0]) / sine
-    corners = np.column_stack((x, y))
-    edges = np.roll(corners, -1, axis=0) - corners
-    forward = cross(normals, edges)
-    return corners if forward.min() > 0.0 else fallback
+@njit(cache=True)
+def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scale) -> tuple[FloatArray, bool]:
+    """Refits edges, drops corners finer than the tolerance, and grows the result."""
+    corners = polygon
+    grown, good = polygon, True
+    for round_ in range(_ROUNDS):
+        reach = tolerance if round_ == 0 else min(tolerance, 1.2 * scale.roughness)
+        lines = refitted(ring, corners, reach, _MARGIN * scale.pitch)
+        lines = _without_details(lines, tolerance)
+        moved, meeting = corners_of(lines, 0.0)
+        if not meeting or not _in_order(moved, lines):
+            break
+        corners = moved
+        grown, _ = corners_of(lines, scale.growth)
+    return grown, good and len(grown) >= 3
+
+
+@njit(cache=True)
+def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
+    """Whether every edge runs along its line in the right sense, so that the corners form a convex polygon."""
+    for i in range(len(corners)):
+        j = i + 1 if i + 1 < len(corners) else 0
+        x, y = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
+        if not (y * lines[i, 0] - x * lines[i, 1] > 0.0):
+            return False
+    return True
+
+
+@njit(cache=True)
+def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
+    """Drops edges that only cut a corner off by less than the tolerance, the finest first."""
+    count = len(lines)
+    while count > 3:
+        finest, least = -1, tolerance
+        for k in range(count):
+            depth = _cut_off(lines[:count], k)
+            if depth < least:
+                finest, least = k, depth
+        if finest < 0:
+            break
+        count -= 1
+        for k in range(finest, count):
+            for j in range(3):
+                lines[k, j] = lines[k + 1, j]
+    return lines[:count]
+
+
+@njit(cache=True)
+def _cut_off(lines: FloatArray, k: int) -> float:
+    """How far outside line k its neighbours would meet without it; infinite if they would not."""
+    a, b, line = lines[k - 1], lines[k + 1 if k + 1 < len(lines) else 0], lines[k]
+    sine = a[0] * b[1] - a[1] * b[0]
+    if not (sine > 0.1 or (sine > -0.1 and a[0] * b[0] + a[1] * b[1] > 0.0)):
+        return np.inf
+    if abs(sine) < 0.02:
+        return abs(a[2] - b[2])
+    x, y = (a[2] * b[1] - b[2] * a[1]) / sine, (b[2] * a[0] - a[2] * b[0]) / sine
+    return abs(line[0] * x + line[1] * y - line[2])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+
 from singulation_core import InvalidInputError
 from singulation_core.polygon import FloatArray
 

@@ -2,19 +2,23 @@
 
 import time
 from dataclasses import dataclass, field
+from functools import cached_property
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
-from singulation_core import Arrangement, InvalidInputError, PlanarObject, ResultCode, SingulationError
-from singulation_core.polygon import FloatArray
 
-from singulation_perception.clustering import euclidean_clusters
-from singulation_perception.outlines import outline_of
+from singulation_core import Arrangement, InvalidInputError, ResultCode, SingulationError
+from singulation_perception.block_search import Blocks, View, blocks_of
+from singulation_perception.flat_clouds import FlatCloud, flat_cloud
+from singulation_perception.object_points import ObjectPoints, object_points
 from singulation_perception.parameters import SegmentationParameters
+from singulation_perception.point_labels import labels_in_image
+from singulation_perception.surfaces import surfaces_of
 from singulation_perception.table_plane import TablePlane, find_table
 
 _DEFAULT = SegmentationParameters()
+_LOWEST_IN_NOISE = 6.0
+_STEP_IN_NOISE, _LEAST_STEP = 7.0, 0.0015  # neighbours differ by 1.4 times the noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,24 +27,47 @@ class Segmentation:
 
     Args:
         arrangement: the objects, in ``table``.
-        labels: (N,) or (H, W) int32, id of the object a point belongs to, -1 for none.
         table: the fitted plane.
-        dropped: what was left out, by reason.
+        dropped: how much was left out, by reason: ``outside`` (points above the table but outside the workspace),
+            ``small`` (points of surfaces too small for a block), ``large`` (faces with too many points), ``tall``
+            (surfaces that reach above ``max_height``), ``sliver`` (faces too narrow for a block), ``shapeless``
+            (faces whose rim gives no polygon), ``stacked`` (faces on top of another block).
         milliseconds: wall time by stage.
     """
 
     arrangement: Arrangement
-    labels: NDArray[np.int32]
     table: TablePlane
-    dropped: dict[str, int] = field(default_factory=dict)
-    milliseconds: dict[str, float] = field(default_factory=dict)
+    dropped: dict[str, int]
+    milliseconds: dict[str, float]
+    _seen: "_Seen" = field(repr=False)
+
+    @cached_property
+    def labels(self) -> NDArray[np.int32]:
+        """(N,) or (H, W) id of the object that each point belongs to, -1 for none; painted when first asked for."""
+        return self._seen.labels()
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What labels are painted from."""
+
+    shape: tuple[int, ...]
+    points: ObjectPoints
+    blocks: Blocks
+    flat: FlatCloud | None
+
+    def labels(self) -> NDArray[np.int32]:
+        if self.flat is None:
+            return labels_in_image(self.shape, self.points, self.blocks)
+        return self.flat.labels(labels_in_image(self.flat.shape, self.points, self.blocks), self.shape[0])
 
 
 def segment(points: NDArray[np.float32], parameters: SegmentationParameters = _DEFAULT) -> Arrangement:
     """Polygons of the blocks in a cloud.
 
     Args:
-        points: (N, 3) or (H, W, 3) [m], camera frame; invalid points are NaN, infinite or (0, 0, 0).
+        points: (N, 3) or (H, W, 3) [m], camera frame; invalid points are NaN, infinite or (0, 0, 0). Clouds in image
+            order (H, W) are faster and keep narrower gaps apart.
         parameters: of table, workspace and blocks.
 
     Returns:
@@ -48,7 +75,7 @@ def segment(points: NDArray[np.float32], parameters: SegmentationParameters = _D
 
     Raises:
         SingulationError: NO_POINTS, NOT_METRES, NO_TABLE, WRONG_TABLE, CLOUD_TOO_LARGE.
-        InvalidInputError: wrong shape.
+        InvalidInputError: wrong shape or type.
     """
     return segment_cloud(points, parameters).arrangement
 
@@ -65,26 +92,55 @@ def segment_cloud(
         parameters: as for ``segment``.
         previous_plane: table of the last cloud from the same camera.
     """
-    _require_cloud(points, parameters)
-    started = time.perf_counter()
-    table = find_table(points, parameters, previous_plane)
-    planned = time.perf_counter()
-    located = _located(points, table)
-    labels, outlines, dropped = _objects(located, table, parameters)
-    done = time.perf_counter()
-    arrangement = Arrangement(outlines)
-    times = {"table": 1e3 * (planned - started), "objects": 1e3 * (done - planned)}
-    return Segmentation(arrangement, labels.reshape(points.shape[:-1]), table, dropped, times)
+    clock = _Clock()
+    image = _image(points, parameters)
+    table = find_table(image, parameters, previous_plane)
+    clock.lap("table")
+    step = parameters.height_step or max(_STEP_IN_NOISE * table.noise, _LEAST_STEP)
+    lowest = max(parameters.min_height, _LOWEST_IN_NOISE * table.noise)
+    seen = object_points(image, table.table_from_camera, parameters.workspace, table.window, lowest, step)
+    clock.lap("points")
+    flat = None
+    if image.shape[0] == 1:
+        flat = flat_cloud(seen, parameters, step)
+        seen = flat.seen
+        clock.lap("clusters")
+    surfaces = surfaces_of(seen, step, None if flat is None else flat.cluster)
+    clock.lap("surfaces")
+    view = View(table.table_from_camera[:3, 3], table.camera_plane, image if flat is None else None)
+    blocks = blocks_of(seen, surfaces, parameters, table.noise, view)
+    clock.lap("outlines")
+    dropped = {"outside": seen.outside, **blocks.dropped}
+    if flat is not None:
+        dropped["small"] += flat.small
+    shape = points.shape[:-1]
+    return Segmentation(Arrangement(blocks.objects), table, dropped, clock.laps, _Seen(shape, seen, blocks, flat))
 
 
-def warm_up() -> None:
-    """Compiles everything, so that the first cloud is as fast as the second."""
-    euclidean_clusters(np.zeros((1, 3), dtype=np.float32), 1.0)
+class _Clock:
+    """Wall time of consecutive stages [ms]."""
+
+    def __init__(self) -> None:
+        self.laps: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def lap(self, name: str) -> None:
+        now = time.perf_counter()
+        self.laps[name] = 1e3 * (now - self._last)
+        self._last = now
 
 
-def _require_cloud(points: NDArray[np.float32], parameters: SegmentationParameters) -> None:
-    if points.ndim not in (2, 3) or points.shape[-1] != 3:
-        raise InvalidInputError(f"points: shape {points.shape}, need (N, 3) or (H, W, 3)")
+def _image(points: NDArray[np.float32], parameters: SegmentationParameters) -> NDArray[np.float32]:
+    """The cloud as (H, W, 3) float32; H = 1 if it has no image order.
+
+    Raises:
+        InvalidInputError: not points.
+        SingulationError: NO_POINTS if there are none at all, CLOUD_TOO_LARGE.
+    """
+    if not isinstance(points, np.ndarray) or points.ndim not in (2, 3) or points.shape[-1] != 3:
+        raise InvalidInputError(f"points: shape {np.shape(points)}, need an array (N, 3) or (H, W, 3)")
+    if points.dtype.kind != "f":
+        raise InvalidInputError(f"points: type {points.dtype}, need float32 (or float64) metres")
     count = points.size // 3
     if count == 0:
         raise SingulationError(ResultCode.NO_POINTS, f"points: shape {points.shape}, the cloud is empty")
@@ -92,86 +148,7 @@ def _require_cloud(points: NDArray[np.float32], parameters: SegmentationParamete
         raise SingulationError(
             ResultCode.CLOUD_TOO_LARGE, f"{count} points, at most {parameters.max_points} are taken (max_points)"
         )
-
-
-def _located(points: NDArray[np.float32], table: TablePlane) -> NDArray[np.float32]:
-    """(N, 3) in ``table``, invalid points NaN."""
-    flat = points.reshape(-1, 3).astype(np.float32)
-    pose = table.table_from_camera.astype(np.float32)
-    with np.errstate(invalid="ignore"):
-        located = flat @ pose[:3, :3].T + pose[:3, 3]
-    located[~np.isfinite(flat).all(axis=1) | (flat == 0.0).all(axis=1)] = np.nan
-    return np.asarray(located)
-
-
-def _objects(
-    located: NDArray[np.float32], table: TablePlane, parameters: SegmentationParameters
-) -> tuple[NDArray[np.int32], list[PlanarObject], dict[str, int]]:
-    low = max(parameters.min_height, 6.0 * table.noise)
-    wanted = (located[:, 2] > low) & (located[:, 2] < parameters.max_height)
-    if parameters.workspace is not None:
-        x_min, x_max, y_min, y_max = parameters.workspace
-        x, y = located[:, 0], located[:, 1]
-        wanted &= (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
-    places = np.flatnonzero(wanted)
-    cloud = located[places]
-    pitch = _pitch(cloud)
-    clusters = euclidean_clusters(cloud, parameters.tolerance or 4.0 * pitch, parameters.min_size, parameters.max_size)
-    labels = np.full(len(located), -1, dtype=np.int32)
-    objects: list[PlanarObject] = []
-    dropped = {"small": int((clusters < 0).sum()), "sliver": 0}
-    for cluster in range(clusters.max(initial=-1) + 1):
-        members = np.flatnonzero(clusters == cluster)
-        item = _object(len(objects), cloud[members], table, pitch, parameters)
-        if item is None:
-            dropped["sliver"] += 1
-            continue
-        labels[places[members]] = item.id
-        objects.append(item)
-    return labels, objects, dropped
-
-
-def _pitch(cloud: NDArray[np.float32]) -> float:
-    """Typical distance of neighbouring points, from the area that the points cover on a 5 mm raster [m]."""
-    if not len(cloud):
-        return 0.001
-    cells = np.unique(np.floor(cloud[:, :2] / 0.005).astype(np.int64), axis=0, return_counts=True)[1]
-    return float(np.sqrt(0.005**2 / max(1.0, float(np.median(cells)))))
-
-
-def _object(
-    number: int, cloud: NDArray[np.float32], table: TablePlane, pitch: float, parameters: SegmentationParameters
-) -> PlanarObject | None:
-    """The block whose points these are, from its top face."""
-    height = _top(cloud[:, 2], max(4.0 * table.noise, 0.001))
-    face = cloud[np.abs(cloud[:, 2] - height) < max(4.0 * table.noise, 0.001)]
-    outline = outline_of(
-        _rim(face[:, :2].astype(np.float64), pitch),
-        parameters.outline_tolerance or 4.0 * pitch,
-        parameters.edge_growth * pitch,
-    )
-    if outline is None or len(outline) < 3:
-        return None
-    if cv2.minAreaRect(outline.astype(np.float32))[1][0] < parameters.min_width:
-        return None
-    return PlanarObject(number, outline, max(height, 0.0), len(cloud))
-
-
-def _top(heights: NDArray[np.float32], width: float) -> float:
-    """Height of the highest level that holds many points [m]."""
-    low = float(heights.min())
-    counts = np.bincount(((heights - low) / width).astype(np.int64))
-    level = np.flatnonzero(counts > 0.5 * counts.max())[-1]
-    near = heights[np.abs(heights - (low + (level + 0.5) * width)) < width]
-    return float(np.median(near))
-
-
-def _rim(face: FloatArray, pitch: float) -> FloatArray:
-    """Outermost points of a face in every direction of a raster: both ends of every row and column."""
-    rims = []
-    for axis in (0, 1):
-        row = np.floor(face[:, axis] / pitch).astype(np.int64)
-        order = np.lexsort((face[:, 1 - axis], row))
-        change = np.flatnonzero(np.diff(row[order])) + 1
-        rims += [order[np.concatenate(([0], change))], order[np.concatenate((change - 1, [len(order) - 1]))]]
-    return np.asarray(face[np.unique(np.concatenate(rims))])
+    native = points if points.dtype == np.float32 and points.flags.aligned else points.astype(np.float32)
+    if native.ndim == 3 and min(native.shape[:2]) > 1:
+        return native
+    return native.reshape(1, -1, 3)

@@ -8,6 +8,15 @@ IntArray = NDArray[np.int32]
 
 
 @njit(cache=True)
+def single_sets(count: int) -> IntArray:
+    """Parents of items none of which are joined."""
+    parent = np.empty(count, dtype=np.int32)
+    for item in range(count):
+        parent[item] = item
+    return parent
+
+
+@njit(cache=True)
 def find_root(parent: IntArray, item: int) -> int:
     """Root of ``item``; halves the path on the way."""
     while parent[item] != item:
@@ -19,7 +28,7 @@ def find_root(parent: IntArray, item: int) -> int:
 @njit(cache=True)
 def unite(parent: IntArray, first: int, second: int) -> None:
     """Joins two sets; the smaller root stays, so that numbers follow the order of the items."""
-    a, b = find_root(parent, first), find_root(parent, second)
+    a, b = find_root(parent, np.int64(first)), find_root(parent, np.int64(second))
     if a < b:
         parent[b] = a
     elif b < a:

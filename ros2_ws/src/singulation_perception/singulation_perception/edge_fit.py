@@ -1,0 +1,131 @@
+"""Straight edges fitted to the rim of a face.
+
+The sensor loses points at an edge, so the points of a rim scatter between the edge and about two point spacings inside
+it. The mean of that scatter depends on how much is lost; its outer limit hardly does. Lines are therefore fitted by
+asymmetric least squares (expectiles; Newey and Powell 1987): points outside the line weigh nine times as much as points
+inside. Measured on ray-cast blocks at half loss, an edge's position then scatters 0.14 spacings instead of 0.24 for plain
+least squares, and moves by 0.2 spacings instead of 0.4 when the loss at edges goes from none to one half.
+"""
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+
+_INSIDE_WEIGHT = 0.1
+_ROUNDS = 8
+_FEWEST = 5  # points of an edge that is fitted
+_PARALLEL = 0.05  # sine below which two edges have no corner
+
+
+@njit(cache=True)
+def fitted_line(points: FloatArray, count: int, normal_x: float, normal_y: float) -> tuple[float, float, float]:
+    """Outward unit normal and offset of the line along the outer limit of the first ``count`` points.
+
+    The normal given is about right: the line is sought as inset over the position along the edge.
+    """
+    cx, cy = 0.0, 0.0
+    for i in range(count):
+        cx, cy = cx + points[i, 0] / count, cy + points[i, 1] / count
+    along, inset, weight = np.empty(count), np.empty(count), np.empty(count)
+    for i in range(count):
+        weight[i] = 1.0
+        x, y = points[i, 0] - cx, points[i, 1] - cy
+        along[i] = y * normal_x - x * normal_y
+        inset[i] = -(x * normal_x + y * normal_y)
+    level, slope = 0.0, 0.0
+    for _ in range(_ROUNDS):
+        w, wt, wx, wtt, wtx = 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(count):
+            w += weight[i]
+            wt += weight[i] * along[i]
+            wx += weight[i] * inset[i]
+            wtt += weight[i] * along[i] * along[i]
+            wtx += weight[i] * along[i] * inset[i]
+        spread = wtt * w - wt * wt
+        slope = (wtx * w - wt * wx) / spread if spread > 0.0 else 0.0
+        level = (wx - slope * wt) / w
+        for i in range(count):
+            outside = inset[i] - level - slope * along[i] < 0.0
+            weight[i] = 1.0 - _INSIDE_WEIGHT if outside else _INSIDE_WEIGHT
+    x = normal_x - slope * normal_y
+    y = normal_y + slope * normal_x
+    length = np.sqrt(x * x + y * y)
+    x, y = x / length, y / length
+    return x, y, x * (cx - level * normal_x) + y * (cy - level * normal_y)
+
+
+@njit(cache=True)
+def edges_of(polygon: FloatArray) -> FloatArray:
+    """(k, 3) outward unit normals and offsets of the edges of a counter-clockwise polygon."""
+    lines = np.empty((len(polygon), 3))
+    for i in range(len(polygon)):
+        j = i + 1 if i + 1 < len(polygon) else 0
+        x, y = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
+        length = max(np.sqrt(x * x + y * y), 1e-12)
+        lines[i, 0], lines[i, 1] = y / length, -x / length
+        lines[i, 2] = lines[i, 0] * polygon[i, 0] + lines[i, 1] * polygon[i, 1]
+    return lines
+
+
+@njit(cache=True)
+def corners_of(lines: FloatArray, growth: float) -> tuple[FloatArray, bool]:
+    """Corners between consecutive lines, all moved outwards by ``growth``; false if two of them have none.
+
+    Corner i lies between line i - 1 and line i.
+    """
+    corners = np.empty((len(lines), 2))
+    for i in range(len(lines)):
+        a, b = lines[i - 1], lines[i]
+        sine = a[0] * b[1] - a[1] * b[0]
+        if not (sine > _PARALLEL):
+            return corners, False
+        first, second = a[2] + growth, b[2] + growth
+        corners[i, 0] = (first * b[1] - second * a[1]) / sine
+        corners[i, 1] = (second * a[0] - first * b[0]) / sine
+    return corners, True
+
+
+@njit(cache=True)
+def refitted(ring: FloatArray, polygon: FloatArray, reach: float, margin: float) -> FloatArray:
+    """Lines (k, 3) through the points of the ring that belong to each edge of the polygon.
+
+    Args:
+        ring: (m, 2) points of the rim.
+        polygon: (k, 2) about right.
+        reach: largest distance of a point to its edge [m].
+        margin: points closer to a corner are left out, at most a fifth of the edge [m].
+    """
+    lines = edges_of(polygon)
+    edge = _nearest_edges(ring, lines, reach)
+    fitted = lines.copy()
+    chosen = np.empty_like(ring)
+    for k in range(len(polygon)):
+        j = k + 1 if k + 1 < len(polygon) else 0
+        ux, uy = -lines[k, 1], lines[k, 0]
+        length = ux * (polygon[j, 0] - polygon[k, 0]) + uy * (polygon[j, 1] - polygon[k, 1])
+        rim = min(margin, 0.2 * length)
+        count = 0
+        for i in range(len(ring)):
+            if edge[i] == k:
+                position = ux * (ring[i, 0] - polygon[k, 0]) + uy * (ring[i, 1] - polygon[k, 1])
+                if rim < position < length - rim:
+                    chosen[count, 0], chosen[count, 1] = ring[i, 0], ring[i, 1]
+                    count += 1
+        if count >= _FEWEST:
+            x, y, offset = fitted_line(chosen, np.int64(count), lines[k, 0], lines[k, 1])
+            fitted[k, 0], fitted[k, 1], fitted[k, 2] = x, y, offset
+    return fitted
+
+
+@njit(cache=True)
+def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> FloatArray:
+    edge = np.empty(len(ring), dtype=np.int32)
+    for i in range(len(ring)):
+        best, nearest = -1, reach
+        for k in range(len(lines)):
+            distance = abs(lines[k, 2] - lines[k, 0] * ring[i, 0] - lines[k, 1] * ring[i, 1])
+            if distance < nearest:
+                best, nearest = k, distance
+        edge[i] = best
+    return edge

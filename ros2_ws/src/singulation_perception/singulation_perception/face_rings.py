@@ -1,0 +1,121 @@
+"""The rims of faces as rings in the plane of the table, with their measures."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from singulation_core.polygon import FloatArray
+from singulation_perception.object_points import IntArray
+from singulation_perception.rings import concave_area, hull_indices, least_width, ring_area
+
+_SMALLEST_AREA = 1e-9  # [m^2] what has less is a line
+_ROUGH_PITCHES, _ROUGH_NOISE = 2.5, 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class FaceRings:
+    """Rings of k faces.
+
+    Args:
+        points: (m, 2) of all rings, counter-clockwise [m].
+        pixels: (m, 2) their rows and columns in the cloud.
+        begin: (k + 1,) first point of each ring.
+        pitch: (k,) distance of neighbouring points [m].
+        roughness: (k,) depth up to which a rim counts as straight [m].
+        width: (k,) least width [m].
+        thickness: (k,) twice the area over the length of the ring [m].
+        concave: (k,) area between ring and hull, roughness apart [m^2].
+    """
+
+    points: FloatArray
+    pixels: IntArray
+    begin: IntArray
+    pitch: FloatArray
+    roughness: FloatArray
+    width: FloatArray
+    thickness: FloatArray
+    concave: FloatArray
+
+    def ring(self, k: int) -> FloatArray:
+        """(m, 2) points of ring k, a view."""
+        return self.points[self.begin[k] : self.begin[k + 1]]
+
+
+def face_rings(
+    xyz: NDArray[np.float32], rim: IntArray, begin: IntArray, count: IntArray, noise: float, camera: FloatArray
+) -> FaceRings:
+    """Rings of the faces.
+
+    Noise moves a point along the line of sight: seen from above a rim stays where it is, seen obliquely it gets rough.
+
+    Args:
+        xyz: (n, 3) points in ``table`` [m].
+        rim: (m, 3) number, row and column of the points on the rims, one face after another.
+        begin: (k + 1,) where each face's begin.
+        count: (k,) points of each face.
+        noise: of the heights [m].
+        camera: (3,) its place in ``table`` [m].
+    """
+    points, pixels, area = _oriented(xyz, rim, begin)
+    # Pick's theorem: the area of a lattice polygon in cells is its points, less half of those on the rim, less one.
+    cells = np.maximum(count - 0.5 * np.diff(begin) - 1.0, 1.0)
+    pitch = np.sqrt(np.maximum(area, _SMALLEST_AREA) / cells)
+    if len(pitch):
+        level = pitch > 0.5 * pitch.max()  # walls have hardly any area from above
+        usual = float(np.sqrt(area[level].sum() / cells[level].sum()))
+        pitch = np.clip(pitch, 0.8 * usual, 1.25 * usual)
+    roughness = np.maximum(_ROUGH_PITCHES * pitch, _ROUGH_NOISE * noise * _obliqueness(xyz, rim, begin, camera))
+    return FaceRings(points, pixels, begin, pitch, roughness, *_measures(points, begin, area, roughness))
+
+
+def _obliqueness(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray, camera: FloatArray) -> FloatArray:
+    """Tangent of the angle between the vertical and the line of sight to each face."""
+    way = camera - xyz[rim[begin[:-1], 0]]
+    return np.asarray(np.hypot(way[:, 0], way[:, 1]) / np.maximum(np.abs(way[:, 2]), 1e-3))
+
+
+@njit(cache=True)
+def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple[FloatArray, IntArray, FloatArray]:
+    points = np.empty((len(rim), 2))
+    pixels = np.empty((len(rim), 2), dtype=np.int32)
+    area = np.empty(len(begin) - 1)
+    for k in range(len(begin) - 1):
+        first, last = begin[k], begin[k + 1]
+        for i in range(first, last):
+            points[i, 0], points[i, 1] = xyz[rim[i, 0], 0], xyz[rim[i, 0], 1]
+            pixels[i, 0], pixels[i, 1] = rim[i, 1], rim[i, 2]
+        area[k] = ring_area(points[first:last])
+        if area[k] < 0.0:
+            area[k] = -area[k]
+            for i in range((last - first) // 2):
+                _swap(points, first + i, last - 1 - i)
+                _swap(pixels, first + i, last - 1 - i)
+    return points, pixels, area
+
+
+@njit(cache=True)
+def _swap(rows: NDArray[Any], one: int, two: int) -> None:
+    a, b = rows[one, 0], rows[one, 1]
+    rows[one, 0], rows[one, 1] = rows[two, 0], rows[two, 1]
+    rows[two, 0], rows[two, 1] = a, b
+
+
+@njit(cache=True)
+def _measures(
+    points: FloatArray, begin: IntArray, area: FloatArray, roughness: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    width, thickness, concave = np.zeros(len(area)), np.zeros(len(area)), np.zeros(len(area))
+    for k in range(len(area)):
+        ring = points[begin[k] : begin[k + 1]]
+        hull = hull_indices(ring)
+        if len(hull) > 2:
+            length = 0.0
+            for i in range(len(ring)):
+                length += np.sqrt((ring[i, 0] - ring[i - 1, 0]) ** 2 + (ring[i, 1] - ring[i - 1, 1]) ** 2)
+            width[k] = least_width(ring, hull)
+            thickness[k] = 2.0 * area[k] / length
+            concave[k] = concave_area(ring, hull, roughness[k])
+    return width, thickness, concave

@@ -1,0 +1,55 @@
+"""Which object each point belongs to."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from singulation_core.polygon import FloatArray, inward_half_planes
+from singulation_perception.block_search import Blocks
+from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
+
+
+def labels_in_image(shape: tuple[int, ...], seen: ObjectPoints, blocks: Blocks) -> IntArray:
+    """(H, W) ids, -1 for none.
+
+    A point belongs to the block of its surface (walls included) whose outline is nearest to it in the plane of the
+    table, of equally near ones (inside both) to the highest.
+    """
+    labels = np.full(shape, -1, dtype=np.int32)
+    objects = sorted(blocks.objects, key=lambda item: blocks.surface[item.id])
+    if not objects:
+        return labels
+    planes = [np.column_stack(inward_half_planes(item.outline)) for item in objects]
+    first_plane = np.concatenate(([0], np.cumsum([len(one) for one in planes])))
+    surface = np.array([blocks.surface[item.id] for item in objects])
+    first_object = np.searchsorted(surface, np.arange(len(blocks.surfaces.count) + 1))
+    ids = np.array([item.id for item in objects], dtype=np.int32)
+    _paint(labels, seen.xyz, seen.runs, blocks.surfaces.of_run, first_object, ids, first_plane, np.vstack(planes))
+    return labels
+
+
+@njit(cache=True)
+def _paint(
+    labels: IntArray,
+    xyz: NDArray[np.float32],
+    runs: IntArray,
+    surface: IntArray,
+    first_object: NDArray[np.int64],
+    ids: IntArray,
+    first_plane: NDArray[np.int64],
+    planes: FloatArray,
+) -> None:
+    for run in range(len(runs)):
+        begin, end = first_object[surface[run]], first_object[surface[run] + 1]
+        if begin == end:
+            continue
+        for column in range(runs[run, START], runs[run, STOP]):
+            point = xyz[runs[run, FIRST] + column - runs[run, START]]
+            best, depth = begin, -np.inf
+            for one in range(begin, end):
+                inside = np.inf
+                for k in range(first_plane[one], first_plane[one + 1]):
+                    inside = min(inside, planes[k, 0] * point[0] + planes[k, 1] * point[1] - planes[k, 2])
+                if inside > depth:
+                    best, depth = one, inside
+            labels[runs[run, ROW], column] = ids[best]

@@ -1,0 +1,187 @@
+"""Closed boundaries as compiled code sees them: (m, 2) points in order, counter-clockwise, the last joined to the first.
+
+Lengths are in metres. ``roughness`` is the depth up to which a rim counts as straight: lost points make it up to two
+point spacings rough, noise along an oblique line of sight some more.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+from singulation_perception.object_points import IntArray
+
+
+class Scale(NamedTuple):
+    """Lengths that belong to a cloud and a face in it [m].
+
+    Args:
+        pitch: distance of neighbouring points.
+        growth: by which blocks end outside the outer limit of the points on their rim.
+        roughness: depth up to which a rim counts as straight.
+    """
+
+    pitch: float
+    growth: float
+    roughness: float
+
+
+_RANK = 4  # points that must lie that deep: less is a hole at the rim
+
+
+@njit(cache=True)
+def ring_area(ring: FloatArray) -> float:
+    """Signed area [m^2], positive when counter-clockwise."""
+    total = 0.0
+    for i in range(len(ring)):
+        j = i + 1 if i + 1 < len(ring) else 0
+        total += (ring[i, 0] - ring[0, 0]) * (ring[j, 1] - ring[0, 1])
+        total -= (ring[j, 0] - ring[0, 0]) * (ring[i, 1] - ring[0, 1])
+    return 0.5 * total
+
+
+@njit(cache=True)
+def hull_indices(ring: FloatArray) -> IntArray:
+    """Which points of a ring are corners of its convex hull, counter-clockwise (Andrew's monotone chain)."""
+    size = len(ring)
+    order = _sorted_by_place(ring)
+    chain = np.empty(2 * size + 2, dtype=np.int32)
+    length = 0
+    for half in range(2):
+        base = length
+        for k in range(size):
+            point = order[k] if half == 0 else order[size - 1 - k]
+            while length >= base + 2 and _turn(ring, chain[length - 2], chain[length - 1], point) <= 0.0:
+                length -= 1
+            chain[length] = point
+            length += 1
+        length -= 1  # the end of one half starts the other
+    hull = np.empty(max(length, 1), dtype=np.int32)
+    for k in range(len(hull)):
+        hull[k] = chain[k]
+    return hull
+
+
+@njit(cache=True)
+def _sorted_by_place(ring: FloatArray) -> IntArray:
+    """Numbers of the points by x, then y. Merge sort: NumPy's would take longer to compile than all of this file."""
+    size = len(ring)
+    order, spare = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
+    for i in range(size):
+        order[i] = i
+    step = 1
+    while step < size:
+        for low in range(0, size, 2 * step):
+            middle, high = min(low + step, size), min(low + 2 * step, size)
+            a, b = low, middle
+            for at in range(low, high):
+                if a < middle and (b >= high or not _before(ring, order[b], order[a])):
+                    spare[at] = order[a]
+                    a += 1
+                else:
+                    spare[at] = order[b]
+                    b += 1
+        order, spare = spare, order
+        step *= 2
+    return order
+
+
+@njit(cache=True)
+def _before(ring: FloatArray, a: int, b: int) -> bool:
+    if ring[a, 0] != ring[b, 0]:
+        return ring[a, 0] < ring[b, 0]
+    return ring[a, 1] < ring[b, 1]
+
+
+@njit(cache=True)
+def _turn(ring: FloatArray, a: int, b: int, c: int) -> float:
+    return (ring[b, 0] - ring[a, 0]) * (ring[c, 1] - ring[a, 1]) - (ring[b, 1] - ring[a, 1]) * (ring[c, 0] - ring[a, 0])
+
+
+@njit(cache=True)
+def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
+    """Area between a ring and its hull, of the pockets deeper than the roughness of the rim [m^2]."""
+    total = 0.0
+    for first, last in pockets(ring, hull, roughness):
+        total += _pocket(ring, np.int64(first), np.int64(last))[0]
+    return total
+
+
+@njit(cache=True)
+def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> IntArray:
+    """(p, 2) first and last point of each pocket between ring and hull that is deeper than ``roughness`` [m].
+
+    The last may lie beyond the end of the ring: count on from its start.
+    """
+    corners = _in_order(hull)
+    found = np.empty((len(corners), 2), dtype=np.int32)
+    count = 0
+    for k in range(len(corners)):
+        first = np.int64(corners[k])
+        last = np.int64(corners[k + 1]) if k + 1 < len(corners) else np.int64(corners[0]) + len(ring)
+        if last - first > _RANK and _pocket(ring, first, last)[1] > roughness:
+            found[count, 0], found[count, 1] = first, last
+            count += 1
+    return found[:count]
+
+
+@njit(cache=True)
+def _in_order(hull: IntArray) -> IntArray:
+    """Numbers of the corners sorted: noise along the line of sight can make a ring, and with it its hull, skip back."""
+    start = 0
+    for k in range(len(hull)):
+        start = k if hull[k] < hull[start] else start
+    corners = np.empty_like(hull)
+    for k in range(len(hull)):
+        corners[k] = hull[(start + k) % len(hull)]
+    for k in range(1, len(corners)):
+        value, at = corners[k], k
+        while at > 0 and corners[at - 1] > value:
+            corners[at] = corners[at - 1]
+            at -= 1
+        corners[at] = value
+    return corners
+
+
+@njit(cache=True)
+def _pocket(ring: FloatArray, first: int, last: int) -> tuple[float, float]:
+    """Area behind one edge of the hull and how deep its fourth deepest point lies."""
+    size = len(ring)
+    end = last if last < size else last - size
+    ex, ey = ring[end, 0] - ring[first, 0], ring[end, 1] - ring[first, 1]
+    length = np.sqrt(ex * ex + ey * ey)
+    if length == 0.0:
+        return 0.0, 0.0
+    deepest = np.zeros(_RANK)
+    area = 0.0
+    before_x, before_y = 0.0, 0.0
+    for at in range(first + 1, last + 1):
+        i = at if at < size else at - size
+        x, y = ring[i, 0] - ring[first, 0], ring[i, 1] - ring[first, 1]
+        area += before_x * y - before_y * x
+        before_x, before_y = x, y
+        depth = (ex * y - ey * x) / length
+        place = _RANK - 1
+        if depth > deepest[place]:
+            while place > 0 and deepest[place - 1] < depth:
+                deepest[place] = deepest[place - 1]
+                place -= 1
+            deepest[place] = depth
+    return 0.5 * abs(area), deepest[_RANK - 1]
+
+
+@njit(cache=True)
+def least_width(ring: FloatArray, hull: IntArray) -> float:
+    """Distance of the closest pair of parallel lines that hold the ring [m]."""
+    least = np.inf
+    for k in range(len(hull)):
+        a, b = hull[k], hull[k + 1] if k + 1 < len(hull) else hull[0]
+        ex, ey = ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
+        length = np.sqrt(ex * ex + ey * ey)
+        if length > 0.0:
+            widest = 0.0
+            for i in hull:
+                widest = max(widest, (ex * (ring[i, 1] - ring[a, 1]) - ey * (ring[i, 0] - ring[a, 0])) / length)
+            least = min(least, widest)
+    return least if least < np.inf else 0.0

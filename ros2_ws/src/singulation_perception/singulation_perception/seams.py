@@ -1,0 +1,221 @@
+"""Where touching blocks may meet: lines that continue an edge of the outline into it.
+
+All blocks are convex, so a reflex corner of a merged outline is a corner of one block on an edge of another, or where
+two corners meet. The seam continues one of the two edges that end there, and ends at a second reflex corner, or, where
+two corners are flush, at an ordinary corner or in the middle of an edge.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+from singulation_perception.edge_fit import fitted_line
+from singulation_perception.object_points import IntArray
+from singulation_perception.rings import Scale
+
+_CORNER_TOLERANCE = 0.72  # of the roughness, for Douglas-Peucker when corners are sought
+_REFLEX = -0.1  # sine of the turn
+_TRIM = 2  # points at either end of an edge that are left out of its line
+_SHORTEST_EDGE = 3.0  # pitches, of an edge that is continued
+_SHORTEST_SEAM = 4.0  # pitches
+_NECK = 12.0  # pitches: two reflex corners that near are joined whatever their edges say
+_NEAR = 20  # points along the ring within which two corners are neighbours
+_ALIGNED = 0.12  # sine up to which an edge at the far end counts as part of the seam
+
+
+@dataclass(frozen=True)
+class SeamCosts:
+    """What a cut costs, in metres of concave outline that it must explain.
+
+    Args:
+        cut: every cut.
+        length: per metre of the cut.
+        open_end: the cut ends in the middle of an edge.
+        corner_end: the cut ends at a corner that is not reflex.
+        bend: times the sine between the cut and the best edge at its far end.
+        thin: a piece without width; falls to 0 at ``thin_width`` [m].
+        neck: joining two near reflex corners across.
+    """
+
+    cut: float = 0.003
+    length: float = 0.35
+    open_end: float = 0.006
+    corner_end: float = 0.002
+    bend: float = 0.02
+    thin: float = 0.02
+    thin_width: float = 0.025
+    neck: float = 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Corners of a ring and the edges between them.
+
+    Args:
+        index: (k,) point of each corner; edge i runs from corner i to the next.
+        lines: (k, 3) outward normal and offset of each edge.
+        length: (k,) of each edge [m].
+        fitted: (k,) whether the edge has enough points for a line of its own.
+    """
+
+    index: IntArray
+    lines: FloatArray
+    length: FloatArray
+    fitted: IntArray
+
+
+def corner_tolerance(scale: Scale) -> float:
+    """Tolerance of Douglas-Peucker for the polygon whose corners may be ends of seams [m]."""
+    return _CORNER_TOLERANCE * scale.roughness
+
+
+def corners_of_ring(ring: FloatArray, polygon: FloatArray) -> Corners:
+    """Lines fitted to the ring between the corners of its simplified polygon (k, 2)."""
+    return Corners(*_edges(ring, polygon))
+
+
+@njit(cache=True)
+def _edges(ring: FloatArray, polygon: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, IntArray]:
+    count = len(polygon)
+    index = np.empty(count, dtype=np.int32)
+    for k in range(count):
+        best = np.inf
+        for i in range(len(ring)):
+            distance = (ring[i, 0] - polygon[k, 0]) ** 2 + (ring[i, 1] - polygon[k, 1]) ** 2
+            if distance < best:
+                best, index[k] = distance, i
+    lines, length, fitted = np.empty((count, 3)), np.empty(count), np.zeros(count, dtype=np.int32)
+    points = np.empty_like(ring)
+    for k in range(count):
+        a, b = index[k], index[k + 1 if k + 1 < count else 0]
+        x, y = ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
+        length[k] = np.sqrt(x * x + y * y)
+        x, y = x / max(length[k], 1e-12), y / max(length[k], 1e-12)
+        lines[k, 0], lines[k, 1], lines[k, 2] = y, -x, y * ring[a, 0] - x * ring[a, 1]
+        steps = (b - a) % len(ring) + 1
+        if steps >= 2 * _TRIM + 5:
+            for i in range(steps - 2 * _TRIM):
+                j = (a + _TRIM + i) % len(ring)
+                points[i, 0], points[i, 1] = ring[j, 0], ring[j, 1]
+            nx, ny, offset = fitted_line(points, np.int64(steps - 2 * _TRIM), y, -x)
+            if nx * y - ny * x > 0.97:
+                lines[k, 0], lines[k, 1], lines[k, 2] = nx, ny, offset
+                fitted[k] = 1
+    return index, lines, length, fitted
+
+
+@njit(cache=True)
+def candidates(
+    ring: FloatArray,
+    index: IntArray,
+    lines: FloatArray,
+    length: FloatArray,
+    pitch: float,
+    open_end: float,
+    corner_end: float,
+    bend: float,
+    neck: float,
+) -> FloatArray:
+    """Possible cuts, (c, 6): first and last point, length [m], penalty [m], and the edges it continues, -1 for none."""
+    count = len(index)
+    turn = np.empty(count)
+    for k in range(count):
+        turn[k] = lines[k - 1, 0] * lines[k, 1] - lines[k - 1, 1] * lines[k, 0]
+    found = np.empty((count * count + 2 * count, 6))
+    size = 0
+    for k in range(count):
+        if turn[k] >= _REFLEX:
+            continue
+        for edge, sense in (((k - 1) % count, 1.0), (k, -1.0)):
+            if length[edge] < _SHORTEST_EDGE * pitch:
+                continue
+            reach, hit = _cast(ring, index[k], lines[edge], sense, _SHORTEST_SEAM * pitch)
+            if hit < 0:
+                continue
+            end, other, sine = _end(ring, index, lines, turn, k, edge, sense, reach, hit, pitch)
+            if end < 0:
+                found[size] = (float(index[k]), float(hit), reach, open_end, float(edge), -1.0)
+            else:
+                x, y = ring[index[end], 0] - ring[index[k], 0], ring[index[end], 1] - ring[index[k], 1]
+                reach = np.sqrt(x * x + y * y)
+                if turn[end] < _REFLEX:
+                    other = other if sine < _ALIGNED else -1
+                    found[size] = (
+                        float(index[k]),
+                        float(index[end]),
+                        reach,
+                        bend * min(sine, 0.3),
+                        float(edge),
+                        float(other),
+                    )
+                else:
+                    found[size] = (float(index[k]), float(index[end]), reach, corner_end, float(edge), -1.0)
+            size += 1
+        for other in range(k + 1, count):
+            if turn[other] < _REFLEX:
+                x, y = ring[index[other], 0] - ring[index[k], 0], ring[index[other], 1] - ring[index[k], 1]
+                across = np.sqrt(x * x + y * y)
+                if across < _NECK * pitch and _apart(np.int64(index[k]), np.int64(index[other]), len(ring)) > _NEAR:
+                    found[size] = (float(index[k]), float(index[other]), across, neck, -1.0, -1.0)
+                    size += 1
+    return found[:size]
+
+
+@njit(cache=True)
+def _apart(a: int, b: int, size: int) -> int:
+    return min((a - b) % size, (b - a) % size)
+
+
+@njit(cache=True)
+def _cast(ring: FloatArray, start: int, line: FloatArray, sense: float, least: float) -> tuple[float, int]:
+    """How far the line runs from a point of the ring until it meets the ring again, and the point it meets."""
+    ux, uy = -line[1] * sense, line[0] * sense
+    best, hit = np.inf, -1
+    last = len(ring) - 1
+    before = line[0] * ring[last, 0] + line[1] * ring[last, 1] - line[2]
+    before_t = (ring[last, 0] - ring[start, 0]) * ux + (ring[last, 1] - ring[start, 1]) * uy
+    for i in range(len(ring)):
+        side = line[0] * ring[i, 0] + line[1] * ring[i, 1] - line[2]
+        t = (ring[i, 0] - ring[start, 0]) * ux + (ring[i, 1] - ring[start, 1]) * uy
+        if (side > 0.0) != (before > 0.0):
+            f = before / (before - side)
+            crossing = before_t + f * (t - before_t)
+            if least < crossing < best:
+                best, hit = crossing, i if f >= 0.5 else (i - 1) % len(ring)
+        before, before_t = side, t
+    return best, hit
+
+
+@njit(cache=True)
+def _end(
+    ring: FloatArray,
+    index: IntArray,
+    lines: FloatArray,
+    turn: FloatArray,
+    start: int,
+    edge: int,
+    sense: float,
+    reach: float,
+    hit: int,
+    pitch: float,
+) -> tuple[int, int, float]:
+    """Corner near the point that is met, its edge that fits the seam best, and the sine between the two; or -1."""
+    ux, uy = -lines[edge, 1] * sense, lines[edge, 0] * sense
+    tolerance = max(5.0 * pitch, 0.06 * reach)
+    best, best_rank, best_edge, best_sine = -1, np.inf, -1, 0.0
+    for k in range(len(index)):
+        if k == start or _apart(np.int64(index[k]), np.int64(hit), len(ring)) * pitch >= 2.0 * tolerance:
+            continue
+        x, y = ring[index[k], 0] - ring[index[start], 0], ring[index[k], 1] - ring[index[start], 1]
+        off = abs(x * lines[edge, 0] + y * lines[edge, 1])
+        if off >= tolerance or x * ux + y * uy <= 3.0 * pitch:
+            continue
+        rank = off - (1.0 if turn[k] < _REFLEX else 0.0)  # reflex corners first
+        if rank < best_rank:
+            before = abs(lines[k - 1, 0] * ux + lines[k - 1, 1] * uy)
+            after = abs(lines[k, 0] * ux + lines[k, 1] * uy)
+            best, best_rank = k, rank
+            best_edge, best_sine = ((k - 1) % len(index), before) if before < after else (k, after)
+    return best, best_edge, best_sine

@@ -1,0 +1,184 @@
+"""Connected surfaces among the object points, and the flat top faces in them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from singulation_perception.levels import levels_of, nearest_level
+from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
+from singulation_perception.union_find import numbered_roots, single_sets, unite
+
+Points = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """Sets of object points that hang together, walls included.
+
+    Args:
+        of_run: (m,) surface of each run of the object points.
+        count: (s,) points.
+        top: (s,) highest point [m].
+    """
+
+    of_run: IntArray
+    count: IntArray
+    top: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Horizontal faces, each connected in the image.
+
+    Args:
+        runs: (m, 4) as in ``ObjectPoints``, of points on a face only.
+        of_run: (m,) face of each run.
+        surface: (f,) surface that each face belongs to.
+        flat: (f,) whether it is a level with many points; else a whole surface that has no flat part.
+        count: (f,) points.
+        height: (f,) mean height [m].
+        box: (f, 4) first row, row after the last, first column, column after the last.
+    """
+
+    runs: IntArray
+    of_run: IntArray
+    surface: IntArray
+    flat: NDArray[np.bool_]
+    count: IntArray
+    height: NDArray[np.float64]
+    box: IntArray
+
+
+def surfaces_of(seen: ObjectPoints, step: float, cluster: IntArray | None = None) -> Surfaces:
+    """Links neighbours in the image that differ in height by at most ``step`` [m].
+
+    Args:
+        seen: the object points.
+        step: of neighbours [m].
+        cluster: (m,) of each run, if only runs of one cluster may be linked.
+    """
+    kind = np.zeros(len(seen.runs), dtype=np.int32) if cluster is None else cluster
+    surface, count = connected_runs(seen.xyz, seen.runs, kind, step)
+    return Surfaces(surface, *_sizes(seen.xyz, seen.runs, surface, count))
+
+
+def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, highest: float, min_size: int) -> Faces:
+    """Parts surfaces into the levels at which they have many points.
+
+    A wall that is seen obliquely can chain the tops of several blocks into one surface; the levels part them again.
+
+    Args:
+        seen: the object points.
+        surfaces: of them.
+        band: half the height range of a face [m].
+        highest: surfaces that reach higher have no faces [m].
+        min_size: fewest points of a level.
+    """
+    wanted = (surfaces.count >= min_size) & (surfaces.top <= highest)
+    first, levels = levels_of(seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, highest, min_size)
+    runs, level = _runs_on_levels(seen.xyz, seen.runs, surfaces.of_run, first, levels, band)
+    face, count = connected_runs(seen.xyz, runs, level, np.inf)
+    counts, heights, boxes, level_of_face = _face_table(seen.xyz, runs, face, level, count)
+    surface = np.searchsorted(first, level_of_face, side="right").astype(np.int32) - 1
+    return Faces(runs, face, surface, np.isfinite(levels[level_of_face]), counts, heights, boxes)
+
+
+@njit(cache=True)
+def connected_runs(xyz: Points, runs: IntArray, kind: IntArray, step: float) -> tuple[IntArray, int]:
+    """Number of the connected set of each run: runs of one kind, above one another, at most ``step`` apart."""
+    parent = single_sets(len(runs))
+    above, row_start = 0, 0
+    for run in range(len(runs)):
+        if run > 0 and runs[run, ROW] != runs[run - 1, ROW]:
+            above = row_start if runs[run - 1, ROW] == runs[run, ROW] - 1 else run
+            row_start = run
+        while above < row_start and runs[above, STOP] <= runs[run, START]:
+            above += 1
+        other = above
+        while other < row_start and runs[other, START] < runs[run, STOP]:
+            if kind[other] == kind[run] and _meet(xyz, runs, other, run, step):
+                unite(parent, np.int64(other), np.int64(run))
+            other += 1
+    return numbered_roots(parent)
+
+
+@njit(cache=True)
+def _meet(xyz: Points, runs: IntArray, one: int, two: int, step: float) -> bool:
+    """Whether two runs in neighbouring rows have neighbours that differ by at most ``step``."""
+    begin, end = max(runs[one, START], runs[two, START]), min(runs[one, STOP], runs[two, STOP])
+    for column in range(begin, end):
+        a = xyz[runs[one, FIRST] + column - runs[one, START], 2]
+        b = xyz[runs[two, FIRST] + column - runs[two, START], 2]
+        if abs(a - b) <= step:
+            return True
+    return False
+
+
+@njit(cache=True)
+def _sizes(xyz: Points, runs: IntArray, surface: IntArray, count: int) -> tuple[IntArray, NDArray[np.float32]]:
+    sizes = np.zeros(count, dtype=np.int32)
+    tops = np.zeros(count, dtype=np.float32)
+    for run in range(len(runs)):
+        length = runs[run, STOP] - runs[run, START]
+        sizes[surface[run]] += length
+        top = tops[surface[run]]
+        for i in range(runs[run, FIRST], runs[run, FIRST] + length):
+            top = max(top, xyz[i, 2])
+        tops[surface[run]] = top
+    return sizes, tops
+
+
+@njit(cache=True)
+def _runs_on_levels(
+    xyz: Points, runs: IntArray, surface: IntArray, first: IntArray, levels: NDArray[np.float64], band: float
+) -> tuple[IntArray, IntArray]:
+    """Runs cut where the level changes, without the points that lie on none."""
+    total = 0
+    for run in range(len(runs)):
+        total += runs[run, STOP] - runs[run, START]
+    cut = np.empty((total, 4), dtype=np.int32)
+    kind = np.empty(total, dtype=np.int32)
+    count = 0
+    for run in range(len(runs)):
+        begin, end = first[surface[run]], first[surface[run] + 1]
+        if begin == end:
+            continue
+        last = -1
+        for column in range(runs[run, START], runs[run, STOP]):
+            i = runs[run, FIRST] + column - runs[run, START]
+            level = nearest_level(levels, begin, end, xyz[i, 2], band)
+            if level >= 0:
+                if level != last:
+                    cut[count, 0], cut[count, 1], cut[count, 3] = runs[run, ROW], column, i
+                    kind[count] = level
+                    count += 1
+                cut[count - 1, 2] = column + 1
+            last = level
+    return cut[:count], kind[:count]
+
+
+@njit(cache=True)
+def _face_table(
+    xyz: Points, runs: IntArray, face: IntArray, level: IntArray, count: int
+) -> tuple[IntArray, NDArray[np.float64], IntArray, IntArray]:
+    counts = np.zeros(count, dtype=np.int32)
+    heights = np.zeros(count, dtype=np.float64)
+    level_of_face = np.zeros(count, dtype=np.int32)
+    box = np.empty((count, 4), dtype=np.int32)
+    for run in range(len(runs)):
+        one = face[run]
+        if counts[one] == 0:
+            box[one, 0], box[one, 2], box[one, 3] = runs[run, ROW], runs[run, START], runs[run, STOP]
+            level_of_face[one] = level[run]
+        box[one, 1] = runs[run, ROW] + 1
+        box[one, 2] = min(box[one, 2], runs[run, START])
+        box[one, 3] = max(box[one, 3], runs[run, STOP])
+        length = runs[run, STOP] - runs[run, START]
+        counts[one] += length
+        for i in range(runs[run, FIRST], runs[run, FIRST] + length):
+            heights[one] += xyz[i, 2]
+    for one in range(count):
+        heights[one] /= counts[one]
+    return counts, heights, box, level_of_face
