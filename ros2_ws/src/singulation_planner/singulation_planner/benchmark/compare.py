@@ -19,6 +19,8 @@ _JAWS = PusherGeometry(tip_radius=0.1, edge_width=0.3, edge_thickness=0.2)
 _TWO_POINTS = 0.6
 _TRAVEL = 4.1  # "4": their pusher stops in the step after 4 units are reached, as free blocks show (they go 4.6)
 _RETREAT = 0.1  # a start is moved back in such steps until it is free
+# Length and width of what must be free there: 0.3 x 0.2, across for an edge, along else (as the outcomes show).
+_FREE = {"single_point": (0.3, 0.2), "edge": (0.2, 0.3), "two_point": (0.3, 0.2)}
 _SKIN = 0.02  # Box2D calls two polygons touching that are nearer than twice its skin of 0.01
 _MODES = {"single_point": ContactMode.SINGLE_POINT, "edge": ContactMode.EDGE, "two_point": ContactMode.TWO_POINT}
 
@@ -26,9 +28,9 @@ _MODES = {"single_point": ContactMode.SINGLE_POINT, "edge": ContactMode.EDGE, "t
 @dataclass(frozen=True, slots=True)
 class _Planned:
     policy: str
-    start: FloatArray  # moved back until it is free
+    start: FloatArray
     direction: FloatArray
-    retreat: float
+    retreat: float  # by which the start was moved back until it was free
     outcome: dict[str, Any]
 
 
@@ -45,25 +47,26 @@ def compare(path: Path) -> pd.DataFrame:
     """
     rows: list[dict[str, Any]] = []
     for scenario, record in read_scenarios(path, 1.0):
-        planned = list(_planned(scenario.arrangement, record["policies"]))
         for mode in _MODES:
-            rows += _rows(scenario, record, mode, [one for one in planned if one.outcome.get(mode)])
+            rows += _rows(scenario, record, mode, list(_planned(scenario.arrangement, record["policies"], mode)))
     return pd.DataFrame(rows)
 
 
-def _planned(arrangement: Arrangement, policies: dict[str, Any]) -> Iterator[_Planned]:
+def _planned(arrangement: Arrangement, policies: dict[str, Any], mode: str) -> Iterator[_Planned]:
     for name, outcome in policies.items():
-        if outcome is None or outcome.get("start") is None:
+        if outcome is None or not outcome.get(mode):
             continue
         start, end = np.array(outcome["start"]), np.array(outcome["end"])
         direction = (end - start) / np.hypot(*(end - start))
-        free = _moved_back(arrangement, start, direction)
+        free = _moved_back(arrangement, start, direction, *_FREE[mode])
         yield _Planned(name, free, direction, float(np.hypot(*(free - start))), outcome)
 
 
-def _moved_back(arrangement: Arrangement, start: FloatArray, direction: FloatArray) -> FloatArray:
-    aside = np.array((-direction[1], direction[0])) * 0.5 * _JAWS.edge_width
-    ahead = direction * 0.5 * _JAWS.edge_thickness
+def _moved_back(
+    arrangement: Arrangement, start: FloatArray, direction: FloatArray, length: float, width: float
+) -> FloatArray:
+    aside = np.array((-direction[1], direction[0])) * 0.5 * width
+    ahead = direction * 0.5 * length
     footprint = np.array((-ahead - aside, ahead - aside, ahead + aside, -ahead + aside))
     position = start
     while any(

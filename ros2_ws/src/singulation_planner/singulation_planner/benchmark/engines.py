@@ -14,6 +14,7 @@ Task = TypeVar("Task")
 Result = TypeVar("Result")
 Engine = Callable[[Callable[[Task], Result], Sequence[Task]], Iterator[Result]]
 
+_PATIENCE = 10.0  # s that a scheduler may take to answer
 _AHEAD = 4  # tasks in the queue for each worker
 
 
@@ -60,12 +61,13 @@ def on_dask(address: str, function: Callable[[Task], Result], tasks: Sequence[Ta
         tasks: any number; few are in flight at a time.
 
     Raises:
-        SingulationError: ``TIMEOUT`` if no scheduler answers, ``NOT_READY`` if it has no workers.
+        SingulationError: ``TIMEOUT`` if no scheduler answers, ``NOT_READY`` if it has no workers, ``INTERNAL`` if they
+            die.
     """
     import distributed  # noqa: PLC0415  takes a second, and few runs need it
 
     try:
-        client = distributed.Client(address, timeout=10.0, set_as_default=False)
+        client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise SingulationError(ResultCode.TIMEOUT, f"no Dask scheduler at {address!r}: {error}") from error
     with client:
@@ -74,8 +76,13 @@ def on_dask(address: str, function: Callable[[Task], Result], tasks: Sequence[Ta
             raise SingulationError(ResultCode.NOT_READY, f"the Dask scheduler at {address!r} has no workers")
         waiting = iter(tasks)
         first = [client.submit(function, task, pure=False) for task in itertools.islice(waiting, _AHEAD * threads)]
-        done = distributed.as_completed(first)
-        for future in done:
-            for task in itertools.islice(waiting, 1):
-                done.add(client.submit(function, task, pure=False))
-            yield future.result()
+        done = distributed.as_completed(first, loop=client.loop)
+        try:
+            for future in done:
+                for task in itertools.islice(waiting, 1):
+                    done.add(client.submit(function, task, pure=False))
+                yield future.result()
+        except (distributed.KilledWorker, distributed.CancelledError) as error:
+            raise SingulationError(
+                ResultCode.INTERNAL, f"workers of {address!r} ended: {error}; run again to go on"
+            ) from error

@@ -50,16 +50,16 @@ def evaluate(task: SceneTask) -> list[Record]:
 def _result(setting: Setting, scenario: Scenario, job: Job) -> Record:
     before = singulation_distance(scenario.arrangement, scenario.unit)
     after, code, text, simulating = before, "OK", "", 0.0
-    started = planned = time.process_time()
+    started = planned = time.thread_time()
     try:
         push = plan(setting, scenario, job)
-        planned = time.process_time()
+        planned = time.thread_time()
         moved = perform(setting, scenario.arrangement, push)
-        simulating = time.process_time() - planned
+        simulating = time.thread_time() - planned
         after = singulation_distance(moved, scenario.unit)
     except SingulationError as error:
         code, text = error.code.name, error.message
-        planned = max(planned, time.process_time() - simulating)
+        planned = max(planned, time.thread_time() - simulating)
     except Exception as error:
         code, text = "INTERNAL", f"{type(error).__name__}: {error}"
     return Record(

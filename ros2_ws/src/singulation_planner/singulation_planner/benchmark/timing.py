@@ -19,6 +19,7 @@ from singulation_planner.benchmark.scenario import Scenario
 from singulation_planner.benchmark.settings import Setting
 
 _REPEATS = 5  # the fastest counts: what is slower is other work on the machine
+_LARGE = 30  # from here on the growth shows; below, calling a planner at all takes longer than planning
 _SIMULATED_UP_TO = 15  # Brute Force takes n^2 pushes
 
 
@@ -30,9 +31,10 @@ class Timing:
     counts: Sequence[int]
     seconds: Sequence[float]
 
-    def growth(self) -> tuple[float, float]:
-        """(a, b) of the fit t = a n^b [s] over all measured n."""
-        known = [(n, t) for n, t in zip(self.counts, self.seconds, strict=True) if np.isfinite(t)]
+    def growth(self, smallest: int = 0) -> tuple[float, float]:
+        """(a, b) of the fit t = a n^b [s] over all measured n >= ``smallest``; NaN if there are fewer than two."""
+        pairs = zip(self.counts, self.seconds, strict=True)
+        known = [(n, t) for n, t in pairs if np.isfinite(t) and n >= smallest]
         if len(known) < 2:
             return float("nan"), float("nan")
         counts, seconds = np.log(np.array(known)).T
@@ -89,10 +91,13 @@ def timing_table(timings: Sequence[Timing], what: str) -> str:
     """Markdown: milliseconds for each n, and the fitted growth."""
     if not timings:
         return ""
-    header = [what, *[f"n = {n}" for n in timings[0].counts], "fit"]
+    header = [what, *[f"n = {n}" for n in timings[0].counts], "all n", f"n >= {_LARGE}"]
     rows = []
     for one in timings:
-        factor, exponent = one.growth()
         cells = [f"{1e3 * t:.3g}" if np.isfinite(t) else "-" for t in one.seconds]
-        rows.append([label(one.policy), *cells, f"{1e6 * factor:.3g} µs · n^{exponent:.2f}"])
+        rows.append([label(one.policy), *cells, _law(*one.growth()), _law(*one.growth(_LARGE))])
     return table(header, rows)
+
+
+def _law(factor: float, exponent: float) -> str:
+    return f"{1e6 * factor:.3g} µs · n^{exponent:.2f}" if np.isfinite(exponent) else "-"
