@@ -10,7 +10,7 @@ from benchmarks.executor.solids import configuration
 from singulation_core import Arrangement, CellGeometry, ContactMode, PusherGeometry
 from singulation_core.polygon import FloatArray
 from yumi_push_executor import Motion, MotionParameters
-from yumi_push_executor.clearance import build_scene, parts_in_view
+from yumi_push_executor.clearance import Margins, build_scene, parts_in_view
 from yumi_push_executor.clearance.shapes import Kind
 from yumi_push_executor.kinematics import CLEAR_VIEW, TIP_OFFSET
 from yumi_push_executor.kinematics.model import arm_model, robot
@@ -22,6 +22,7 @@ _STEP = 0.004  # [s], as the robot's controller interpolates
 _SPARSE = 10  # every how many of these samples distances are measured
 _BETWEEN = 0.004  # [m] that clearance may fall below a margin between two postures the planner checked
 _TOUCHED = frozenset((Phase.PUSH, Phase.RETREAT))
+_LINES = frozenset((Phase.DESCEND, Phase.PUSH, Phase.RETREAT))
 
 
 @dataclass
@@ -106,7 +107,7 @@ def _tips(
     allowed = {Phase.PUSH: p.push_speed, Phase.DESCEND: p.vertical_speed, Phase.RETREAT: p.vertical_speed}
     if not (fastest <= allowed.get(phase, p.approach_speed) * 1.001):
         figures.violations.append(f"{phase.name}: tips at {fastest:.3f} m/s")
-    if phase not in (Phase.DESCEND, Phase.PUSH, Phase.RETREAT):
+    if phase not in _LINES:
         return
     pose, line = cell.body_from_table, middle_line(motion.push, PusherGeometry())
     start, end = (pose[:3, :2] @ point + pose[:3, 3] + p.tip_height * pose[:3, 2] for point in (line.start, line.end))
@@ -145,7 +146,6 @@ def _distances(
 ) -> None:
     """Smallest distance of every kind of pair; what may be touched in this phase is left out."""
     model, work = robot(), robot().createData()
-    margins = p.margins.by_kind()
     postures = dict(CLEAR_VIEW)
     for row in positions:
         postures[motion.arm] = row
@@ -154,12 +154,20 @@ def _distances(
         for pair, result in zip(scene.pairs, data.distanceResults, strict=True):
             if _may_touch(pair.kind, phase, pair.block in scene.touched):
                 continue
-            near = pair.kind is Kind.FINGER_BLOCK and phase in (Phase.DESCEND, Phase.PUSH, Phase.RETREAT)
-            margin = p.margins.descent if near else margins[pair.kind]
+            margin = _margin(pair.kind, phase, p.margins)
             distance = result.min_distance
-            figures.clearance[pair.kind.value] = min(figures.clearance.get(pair.kind.value, np.inf), distance)
+            name = f"{pair.kind.value}, {'on the lines' if phase in _LINES else 'travelling'}"
+            figures.clearance[name] = min(figures.clearance.get(name, np.inf), distance)
             if not (distance >= max(margin - _BETWEEN, 0.0)):
                 figures.violations.append(f"{phase.name}: {pair.kind.value} {distance * 1e3:.2f} mm")
+
+
+def _margin(kind: Kind, phase: Phase, margins: Margins) -> float:
+    if kind is Kind.FINGER_BLOCK and phase in _LINES:
+        return margins.descent
+    if kind is Kind.FINGER_TABLE and phase in _LINES:
+        return margins.finger_table
+    return margins.by_kind()[kind]
 
 
 def _may_touch(kind: Kind, phase: Phase, touched: bool) -> bool:

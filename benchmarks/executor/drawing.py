@@ -124,7 +124,7 @@ def save_strip(path: Path, moments: Sequence[Moment], push: Push) -> None:
     for column, moment in enumerate(moments):
         axes = figure.add_subplot(3, len(moments), column + 1, projection="3d")
         draw_scene(axes, moment, cell)
-        look(axes, np.array((0.22, 0.0, 0.17)), 0.66, 24.0, 32.0)
+        look(axes, np.array((0.2, 0.0, 0.22)), 0.82, 20.0, 20.0)
         axes.set_title(moment.title, fontsize=12)
         axes = figure.add_subplot(3, len(moments), len(moments) + column + 1, projection="3d")
         draw_scene(axes, moment, cell, only_jaws_of=moment.arm)
@@ -166,7 +166,7 @@ def save_animation(path: Path, moments: Sequence[Moment], rate: int) -> None:
     def show(index: int) -> list[Artist]:
         axes.clear()
         draw_scene(axes, moments[index], cell)
-        look(axes, np.array((0.25, 0.0, 0.2)), 0.56, 26.0, 32.0)
+        look(axes, np.array((0.2, 0.0, 0.22)), 0.78, 20.0, 20.0)
         axes.text2D(0.02, 0.94, moments[index].title, transform=axes.transAxes)
         return []
 

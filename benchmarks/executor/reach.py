@@ -78,6 +78,6 @@ def _margin(arm: YumiArm, checker: Checker, pose: FloatArray, seed: FloatArray) 
     q = seed.copy()
     if not (max(chain.solve(arm.chain, q, pose, seed, 40)) <= 1e-6):
         return float("nan")
-    if checker.first_contact(q[None], Stage.TRAVEL) is not None:
+    if checker.first_contact(q[None], Stage.DESCEND) is not None:
         return float("nan")
     return float(np.minimum(q - arm.lower, arm.upper - q)[:6].min())

@@ -57,9 +57,8 @@ def _planned_lines(sets: dict[str, list[Trial]]) -> list[str]:
         refused = Counter(one.code.name for one in trials if one.motion is None)
         text = ", ".join(f"{code} {count}" for code, count in refused.most_common()) or "none"
         total = sum(one.motion is not None for one in trials)
-        lines.append(
-            f"| {name} | {len(trials)} | {len(inside)} | {total} | {100 * done / len(inside):.1f} % | {text} |"
-        )
+        share = 100.0 * done / max(len(inside), 1)
+        lines.append(f"| {name} | {len(trials)} | {len(inside)} | {total} | {share:.1f} % | {text} |")
     for name, trials in sets.items():
         arms = Counter(one.motion.arm for one in trials if one.motion)
         modes = Counter(one.task.push.contact_mode.label for one in trials if one.motion is None)

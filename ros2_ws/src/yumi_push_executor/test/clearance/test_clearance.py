@@ -109,6 +109,15 @@ def test_the_named_postures_are_clear_for_both_arms(postures):
         assert slack > 0.02, contact
 
 
+@pytest.mark.parametrize(
+    "degrees",
+    [(-62.62, -20.31, 36.71, 44.91, 78.61, 74.79, -90.07), (-51.16, -99.4, 36.0, 21.57, 107.19, 84.11, 94.61)],
+)
+def test_postures_recorded_on_a_real_robot_are_clear(degrees):
+    slack, contact = nearest(np.deg2rad(np.array(degrees)), right=FOLDED["right"])
+    assert slack > 0.02, contact
+
+
 def test_every_shape_belongs_to_a_part():
     shapes = robot_shapes()
     for arm in ("left", "right"):
