@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from benchmarks.perception.scenes import AREA, FULL, HALF, Scene, make_scene
-from benchmarks.transport.processes import ECHO, PERCEPTION, SETTINGS
+from benchmarks.transport.processes import ECHO, PERCEPTION, RELIABLE_ECHO, SETTINGS
 
 from singulation_core.transforms import quaternion_of
 from singulation_node import testing
@@ -51,7 +51,7 @@ def main() -> int:
     rows = []
     for sensor in (HALF, FULL):
         scene = make_scene(7, sensor)
-        for receiver in (ECHO, PERCEPTION):
+        for receiver in (RELIABLE_ECHO, ECHO, PERCEPTION):
             for settings in SETTINGS:
                 rows.append(_row(scene, settings, receiver, options.repeats))
                 print(_markdown(rows[-1:]).splitlines()[-1], flush=True)

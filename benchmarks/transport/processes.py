@@ -16,7 +16,7 @@ from singulation_perception.perception_node import PerceptionNode
 
 INSTALLED, PROFILE_ONLY, SHIPPED = "as installed", "transport profile", "profile and kept memory"
 SETTINGS = (INSTALLED, PROFILE_ONLY, SHIPPED)
-ECHO, PERCEPTION = "echo", "perception_node"
+ECHO, RELIABLE_ECHO, PERCEPTION = "echo", "echo, reliable", "perception_node"
 
 
 def apply(settings: str) -> None:
@@ -31,10 +31,10 @@ def apply(settings: str) -> None:
 class Echo(Node):
     """Answers each cloud with an empty arrangement of its stamp: what is left without the segmentation."""
 
-    def __init__(self) -> None:
+    def __init__(self, qos: Any) -> None:
         super().__init__("echo")
         self._objects = self.create_publisher(Arrangement, "objects", STATE)
-        self.create_subscription(PointCloud2, "points", self._answer, SENSOR_IN)
+        self.create_subscription(PointCloud2, "points", self._answer, qos)
 
     def _answer(self, cloud: Any) -> None:
         self._objects.publish(Arrangement(header=Header(stamp=cloud.header.stamp, frame_id="table")))
@@ -44,7 +44,8 @@ def main() -> int:
     """Run the receiver."""
     settings, receiver, *rest = sys.argv[1:]
     apply(settings)
-    return run_node(Echo if receiver == ECHO else PerceptionNode, [sys.argv[0], "--autostart", *rest])
+    made = {ECHO: lambda: Echo(SENSOR_IN), RELIABLE_ECHO: lambda: Echo(1), PERCEPTION: PerceptionNode}
+    return run_node(made[receiver], [sys.argv[0], "--autostart", *rest])
 
 
 if __name__ == "__main__":
