@@ -61,7 +61,7 @@ def audit(motion: Motion, arrangement: Arrangement, cell: CellGeometry, paramete
         poses = _tool_poses(motion.arm, positions)
         _tips(figures, motion, segment.phase, poses, cell, parameters)
         _distances(figures, scene, data, motion, segment.phase, positions[::_SPARSE], parameters)
-    if parts_in_view({motion.arm: before}, cell) and before is not None:
+    if before is not None and parts_in_view({motion.arm: before}, cell):
         figures.violations.append("the arm ends in the camera's view")
     return figures
 

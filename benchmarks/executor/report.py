@@ -43,7 +43,7 @@ def _reach_lines(reach: ReachMap) -> list[str]:
         "| arm | share of the workspace |",
         "|---|---|",
     ]
-    return lines + [f"| {name} | {100 * mask.mean():.1f} % |" for name, mask in rows]
+    return lines + [f"| {name} | {100.0 * float(mask.mean()):.1f} % |" for name, mask in rows]
 
 
 def _planned_lines(sets: dict[str, list[Trial]]) -> list[str]:
