@@ -68,6 +68,14 @@ def test_a_move_to_where_it_stands_is_one_point():
     assert joined([move, other]).duration == pytest.approx(other.duration)
 
 
+def test_the_last_joint_alone_is_limited_by_itself():
+    arm, parameters, end = YumiArm("left"), MotionParameters(), CLEAR_VIEW["left"].copy()
+    end[6] += 1.0
+    move = joint_move(arm, CLEAR_VIEW["left"], end, parameters)
+    profile = Trapezoid(1.0, parameters.velocity_share * float(arm.velocity[6]), parameters.joint_acceleration[6])
+    assert move.duration == pytest.approx(profile.duration)
+
+
 def test_backwards_twice_is_the_same_and_joined_keeps_rest_between():
     move = joint_move(YumiArm("left"), CLEAR_VIEW["left"], BRANCHES[0]["left"], MotionParameters())
     again = backwards(backwards(move))

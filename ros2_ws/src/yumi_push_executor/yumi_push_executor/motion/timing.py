@@ -9,6 +9,7 @@ from yumi_push_executor.motion.trapezoid import Trapezoid
 from yumi_push_executor.supervision.trajectory import Trajectory
 
 KNOT_STEP = 0.05  # [s] between the points of a trajectory
+_NOTHING = 1e-9  # [rad] and [m]
 _SAMPLED = 1.01  # the fastest moment of the tips may lie between two samples
 
 
@@ -61,12 +62,12 @@ def joint_move(arm: YumiArm, start: FloatArray, end: FloatArray, parameters: Mot
     """All joints together, straight in joint space, from rest to rest; the tips keep below the approach speed."""
     way = end - start
     size = np.abs(way)
-    if not (size.max() > 1e-9):
+    if not (size.max() > _NOTHING):
         return Trajectory(np.zeros(1), start[None], np.zeros((1, 7)))
-    tip_way = _SAMPLED * arm.tip_way(start, end)
-    with np.errstate(divide="ignore"):
-        speed = float((parameters.velocity_share * arm.velocity / size).min())
-        acceleration = float((np.array(parameters.joint_acceleration) / size).min())
+    # Joints that stand, and tips that do when only the last joint turns, limit nothing.
+    tip_way, size = max(_SAMPLED * arm.tip_way(start, end), _NOTHING), np.maximum(size, _NOTHING)
+    speed = float((parameters.velocity_share * arm.velocity / size).min())
+    acceleration = float((np.array(parameters.joint_acceleration) / size).min())
     profile = Trapezoid(
         1.0,
         min(speed, parameters.approach_speed / tip_way),
