@@ -3,7 +3,7 @@
 In: ``execute_push`` (action), ``push`` (only with the parameter ``auto_execute``), ``objects``, ``joint_states``,
 ``driver_state``. Out: ``<arm>_arm_controller/joint_trajectory``, ``<arm>_gripper_controller/commands``,
 ``last_outcome`` (singulation_msgs/PushOutcome, latched), ``/diagnostics``. The service ``halt`` holds both arms at any
-time; it is no emergency stop.
+time; it is no emergency stop. The service ``clear_view`` brings arms that were stopped in the camera's view out of it.
 
 Every goal is accepted and gets a result with a code; one that comes while another is executed is aborted with BUSY.
 A goal whose client is gone is finished all the same. Nothing that was stopped goes on by itself.
@@ -28,11 +28,12 @@ from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import LATCHED, STATE
 from yumi_push_executor.controllers import Controllers
+from yumi_push_executor.ending import Ending
 from yumi_push_executor.executor_settings import ExecutorSettings
 from yumi_push_executor.goal_ledger import GoalLedger
 from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.outcome_messages import feedback_of, outcome_of, result_of
-from yumi_push_executor.push_execution import Ending, Outside, PushExecution
+from yumi_push_executor.push_execution import Outside, PushExecution
 from yumi_push_executor.push_gate import PushGate, Stamp
 from yumi_push_executor.push_planner import PushPlanner
 from yumi_push_executor.robot_view import RobotView
@@ -69,6 +70,7 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         self.create_subscription(DriverState, "driver_state", self._take_driver, STATE, callback_group=states)
         self.create_subscription(Arrangement, "objects", self._take_objects, STATE, callback_group=rest)
         self.create_service(Trigger, "halt", self._halt, callback_group=ReentrantCallbackGroup())
+        self.create_service(Trigger, "clear_view", self._clear_view, callback_group=ReentrantCallbackGroup())
         self.create_timer(_REPORT_PERIOD, self._report, callback_group=rest)
         self._open_action(settings.result_timeout)
 
@@ -219,6 +221,17 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
             self._controllers.send(order)
         response.success = True
         response.message = "nothing was being executed; both arms are held where they are"
+        return response
+
+    @guarded_service
+    def _clear_view(self, request: Any, response: Any) -> Any:
+        execution = self._execution
+        if execution is None or not self.is_active:
+            raise SingulationError(ResultCode.NOT_READY, "the node is not active")
+        ending = execution.clear_view(self.settings.limits)
+        if ending.defect is not None:
+            report_failure(self, "clear_view", ending.defect)
+        response.success, response.message = ending.code is ResultCode.OK, f"{ending.code.name}: {ending.text}"
         return response
 
     @guarded

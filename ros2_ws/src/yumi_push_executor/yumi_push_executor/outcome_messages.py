@@ -9,7 +9,7 @@ from std_msgs.msg import Header
 
 from singulation_core import singulation_distance
 from singulation_core.conversions import arrangement_to_msg, point_to_msg
-from yumi_push_executor.push_execution import Ending
+from yumi_push_executor.ending import Ending
 from yumi_push_executor.supervision import Step
 
 

@@ -1,46 +1,30 @@
 """One push at a time, from the request to its one ending; no ROS in here."""
 
-import math
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from singulation_core import Arrangement, Push, ResultCode, SingulationError
-from singulation_core.polygon import FloatArray
+from yumi_push_executor.ending import Attempt, Ending
+from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.motion_runner import MotionRunner
 from yumi_push_executor.push_gate import PushGate, Stamp
 from yumi_push_executor.push_planner import PushPlanner
 from yumi_push_executor.robot_view import RobotView
-from yumi_push_executor.supervision import Instant, Order, Outcome, Segment, Step, SupervisionLimits, Supervisor
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Ending:
-    """How a push ended.
-
-    Args:
-        code: one of the result codes.
-        text: why.
-        reached: (3,) where the tip of the arm that pushed is now, in the table frame [m]; NaN if no arm was chosen.
-        before: the arrangement that was kept clear of, None if it did not come to that.
-        defect: what was thrown, if the code is ``INTERNAL``.
-        planning_time: of the motion [s], NaN if none was planned.
-    """
-
-    code: ResultCode
-    text: str
-    reached: FloatArray
-    before: Arrangement | None = None
-    defect: Exception | None = None
-    planning_time: float = math.nan
-
-    @classmethod
-    def failed(cls, code: ResultCode, text: str) -> "Ending":
-        """It did not come to anything."""
-        return cls(code, text, np.full(3, np.nan))
+from yumi_push_executor.supervision import (
+    Instant,
+    Order,
+    Outcome,
+    Phase,
+    Sample,
+    Segment,
+    Step,
+    SupervisionLimits,
+    Supervisor,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,22 +76,34 @@ class PushExecution:
             cancelled: whether the client has cancelled.
             on_step: hears of every step.
         """
-        if not self._busy.acquire(blocking=False):
-            return Ending.failed(ResultCode.BUSY, "another push is being executed; wait for its result")
-        self.idle.clear()
-        attempt = _Attempt()
-        try:
-            self._runner = MotionRunner(self._view, limits, self._outside.send, self._outside.clock, cancelled)
-            outcome = self._serve(attempt, read, limits, self._runner, on_step)
-            return self._ending(attempt, outcome.code, outcome.text)
-        except SingulationError as error:
-            return self._ending(attempt, error.code, error.message)
-        except Exception as error:
-            return self._ending(attempt, ResultCode.INTERNAL, f"{type(error).__name__}: {error}", error)
-        finally:
-            self._runner = None
-            self.idle.set()
-            self._busy.release()
+
+        def serve(attempt: Attempt, runner: MotionRunner) -> Outcome:
+            push, stamp = read()
+            attempt.before = self._gate.require_fresh(stamp, self._outside.ros_time())
+            started = time.perf_counter()
+            segments = self._planner.plan(push, attempt.before, self._sample())
+            attempt.planning_time = time.perf_counter() - started
+            return self._run(segments, attempt, runner, limits, on_step)
+
+        return self._one_at_a_time(serve, limits, cancelled)
+
+    def clear_view(self, limits: SupervisionLimits) -> Ending:
+        """Bring arms that stand in the camera's view out of it, one after the other. Never raises."""
+
+        def serve(attempt: Attempt, runner: MotionRunner) -> Outcome:
+            attempt.before = self._gate.newest()
+            outcome = Outcome(ResultCode.OK, "no arm is in the camera's view", standing=True)
+            for arm in ARMS:
+                way = self._planner.clear_view(arm, self._sample(), attempt.before)
+                if way is None:
+                    continue
+                segment = Segment(Phase.CLEAR_VIEW, arm, trajectory=way)
+                outcome = self._run((segment,), attempt, runner, limits, lambda _: None)
+                if outcome.code is not ResultCode.OK:
+                    break
+            return outcome
+
+        return self._one_at_a_time(serve, limits, lambda: False)
 
     def halt(self, reason: str) -> bool:
         """Stop a push that is being executed; whether there was one."""
@@ -123,54 +119,69 @@ class PushExecution:
         if runner is not None:
             runner.abandon()
 
-    def _serve(
+    def _one_at_a_time(
         self,
-        attempt: "_Attempt",
-        read: Callable[[], tuple[Push, Stamp]],
+        serve: Callable[[Attempt, MotionRunner], Outcome],
         limits: SupervisionLimits,
+        cancelled: Callable[[], bool],
+    ) -> Ending:
+        if not self._busy.acquire(blocking=False):
+            return Ending.failed(ResultCode.BUSY, "another motion is being executed; wait for its end")
+        self.idle.clear()
+        attempt = Attempt()
+        try:
+            with self._view.lock:
+                self._view.watch.limits = limits
+            self._runner = MotionRunner(self._view, limits, self._outside.send, self._outside.clock, cancelled)
+            outcome = serve(attempt, self._runner)
+            return self._ending(attempt, outcome.code, outcome.text)
+        except SingulationError as error:
+            return self._ending(attempt, error.code, error.message)
+        except Exception as error:
+            return self._ending(attempt, ResultCode.INTERNAL, f"{type(error).__name__}: {error}", error)
+        finally:
+            self._runner = None
+            self.idle.set()
+            self._busy.release()
+
+    def _run(
+        self,
+        segments: Sequence[Segment],
+        attempt: Attempt,
         runner: MotionRunner,
+        limits: SupervisionLimits,
         on_step: Callable[[Step], None],
     ) -> Outcome:
-        with self._view.lock:
-            self._view.watch.limits = limits
-        push, stamp = read()
-        attempt.before = self._gate.require_fresh(stamp, self._outside.ros_time())
-        started = time.perf_counter()
-        segments = self._plan(push, attempt.before)
-        attempt.planning_time = time.perf_counter() - started
-        attempt.arm = segments[0].arm
+        attempt.arm, blocks = segments[0].arm, attempt.before or Arrangement(())
         self._outside.require_controllers(attempt.arm)
-        supervisor = Supervisor(segments, self._view.watch, limits, self._planner.speeds, self._planner.lift)
+        planner = self._planner
+        supervisor = Supervisor(
+            segments,
+            self._view.watch,
+            limits,
+            planner.speeds,
+            planner.lift,
+            lambda arm, _: planner.clear_view(arm, self._sample(), blocks),
+        )
         try:
             return runner.run(supervisor, on_step)
         finally:
             if runner.moved:
                 self._gate.moved(self._outside.ros_time())
 
-    def _plan(self, push: Push, arrangement: Arrangement) -> tuple[Segment, ...]:
+    def _sample(self) -> Sample:
+        """Where the arms are now."""
         with self._view.lock:
             fault, sample = self._view.watch.fault(self._outside.clock()), self._view.watch.latest
-        if fault is not None or sample is None:
-            raise (
-                SingulationError(fault.code, fault.text)
-                if fault
-                else SingulationError(ResultCode.NOT_READY, "no joint state has come yet")
-            )
-        return self._planner.plan(push, arrangement, sample)
+        if fault is not None:
+            raise SingulationError(fault.code, fault.text)
+        assert sample is not None  # else the watch had complained
+        return sample
 
-    def _ending(self, attempt: "_Attempt", code: ResultCode, text: str, defect: Exception | None = None) -> Ending:
+    def _ending(self, attempt: Attempt, code: ResultCode, text: str, defect: Exception | None = None) -> Ending:
         with self._view.lock:
             sample = self._view.watch.latest
         reached = np.full(3, np.nan)
         if sample is not None and attempt.arm:
             reached = self._planner.tip(attempt.arm, sample.positions[attempt.arm])
         return Ending(code, text, reached, attempt.before, defect, attempt.planning_time)
-
-
-@dataclass(slots=True)
-class _Attempt:
-    """What became known on the way, for the ending."""
-
-    arm: str = ""
-    planning_time: float = math.nan
-    before: Arrangement | None = None

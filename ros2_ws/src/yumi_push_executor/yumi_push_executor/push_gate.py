@@ -63,16 +63,18 @@ class PushGate:
             raise _stale(f"the push was planned on a view taken {since:.2f} s before the last motion ended; look again")
         return self._arrangement(stamp)
 
+    def newest(self) -> Arrangement:
+        """The arrangement that came last, empty if none has come."""
+        return next(reversed(self._seen.values()), Arrangement(()))
+
     def _arrangement(self, stamp: Stamp) -> Arrangement:
         if stamp in self._seen:
             return self._seen[stamp]
-        if self._seen:
-            return next(reversed(self._seen.values()))
-        if self._need_objects:
+        if self._need_objects and not self._seen:
             raise SingulationError(
                 ResultCode.NOT_READY, "no arrangement has come yet: what to keep clear of is unknown"
             )
-        return Arrangement(())
+        return self.newest()
 
 
 def _stale(text: str) -> SingulationError:

@@ -5,11 +5,13 @@ import numpy as np
 from singulation_core import Arrangement, ContactMode, Push
 from singulation_core.polygon import FloatArray
 from singulation_core.transforms import inverse
+from yumi_push_executor.clearance import parts_in_view
 from yumi_push_executor.executor_settings import ExecutorSettings
 from yumi_push_executor.kinematics import YumiArm
 from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.lifting import plan_lift
-from yumi_push_executor.motion import plan_motion
+from yumi_push_executor.motion import plan_clear_view, plan_motion
+from yumi_push_executor.motion.parameters import MAX_OPENING
 from yumi_push_executor.supervision import JointRange, Phase, Sample, Segment, Trajectory
 
 
@@ -33,6 +35,7 @@ class PushPlanner:
             low = plan_motion(push, cell=self._settings.cell, arms=(arm,)).segment(Phase.DESCEND).trajectory
             assert low is not None
             self.lift(arm, low.end)
+            parts_in_view({arm: low.end}, self._settings.cell)
 
     @property
     def ranges(self) -> dict[str, JointRange]:
@@ -71,6 +74,20 @@ class PushPlanner:
         if float(self.tip(arm, q)[2]) >= settings.lift_height:
             return None
         return plan_lift(self._arms[arm], q, self._body_from_table[:3, 2], settings.lift_height, settings.lift_speed)
+
+    def clear_view(self, arm: str, sample: Sample, arrangement: Arrangement) -> Trajectory | None:
+        """The way of an arm out of the camera's view; None if it is not in it.
+
+        Raises:
+            SingulationError: ``UNREACHABLE`` or ``PATH_BLOCKED``.
+        """
+        settings = self._settings
+        if not parts_in_view({arm: sample.positions[arm]}, settings.cell):
+            return None
+        opening = sample.openings.get(arm, MAX_OPENING)
+        return plan_clear_view(
+            arm, arrangement, cell=settings.cell, joints=sample.positions, opening=opening, parameters=settings.motion
+        )
 
     def tip(self, arm: str, q: FloatArray) -> FloatArray:
         """(3,) point between the finger tips of an arm at (7,) rad, in the table frame [m]."""

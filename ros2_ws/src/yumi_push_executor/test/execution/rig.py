@@ -43,6 +43,7 @@ class Rig:
         self.mode, self.enabled, self.driver_talks, self.message = DriverMode.MOTORS_ON, True, True, ""
         self.corrupt: Callable[[Sample], Sample | None] = lambda sample: sample
         self.lift, self.lift_error, self.asked_to_lift = 0.08, None, 0
+        self.clear, self.clear_error = False, None
         self.skip_steps = False
         for _ in range(150):
             self.cycle()
@@ -52,6 +53,11 @@ class Rig:
         if self.lift_error is not None:
             raise self.lift_error
         return None if not self.lift else smooth(q, q - offsets(0.0, self.lift), 0.4)
+
+    def plan_clear(self, arm, q):
+        if self.clear_error is not None:
+            raise self.clear_error
+        return smooth(q, HOME[arm], 1.0) if self.clear else None
 
     def instant(self):
         return Instant(self.now, self.wall)
@@ -85,7 +91,7 @@ class Rig:
                 self.wanted[order.arm] = order.opening
 
     def supervisor(self, segments=None):
-        return Supervisor(segments or push_segments(), self.watch, self.limits, SPEEDS, self.plan_lift)
+        return Supervisor(segments or push_segments(), self.watch, self.limits, SPEEDS, self.plan_lift, self.plan_clear)
 
     def run(self, segments=None, events=(), until=30.0) -> Outcome:
         """A motion to its end; ``events`` are (phase, seconds after the phase was first seen, function)."""

@@ -140,6 +140,22 @@ def test_halt_holds_both_arms_when_nothing_is_executed(cell):
         np.testing.assert_allclose(message.points[-1].positions, HOME[arm], atol=1e-3)
 
 
+def test_an_arm_that_was_stopped_in_the_view_leaves_it_when_asked(cell):
+    cell.executor.planner.duration = 2.0
+    goal = cell.send()
+    cell.reach(Phase.PUSH)
+    busy = call(cell.client, Trigger, "clear_view", Trigger.Request())
+    assert not busy.success
+    assert busy.message.startswith("BUSY")
+    goal.cancel_goal_async()
+    cell.result(goal)
+    answer = call(cell.client, Trigger, "clear_view", Trigger.Request())
+    assert answer.success
+    assert answer.message == "OK: done"
+    np.testing.assert_allclose(cell.driver.arms["left"].q, HOME["left"], atol=0.01)
+    assert call(cell.client, Trigger, "clear_view", Trigger.Request()).message == "OK: no arm is in the camera's view"
+
+
 def test_what_the_planner_refuses_has_its_code_and_nothing_moves(cell):
     def refuse():
         raise SingulationError(ResultCode.PATH_BLOCKED, "block 3 is in the way")

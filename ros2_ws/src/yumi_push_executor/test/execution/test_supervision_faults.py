@@ -295,6 +295,7 @@ def test_jaws_that_give_way_during_the_push_end_it(rig):
 def test_a_hand_that_loses_its_calibration_ends_the_motion(rig):
     outcome = rig.run(events=[(Phase.APPROACH, 0.2, lambda rig, _: rig.calibrated.update(left=False))])
     assert outcome.code is ResultCode.GRIPPER_NOT_CALIBRATED
+    assert "retreated upwards" in outcome.text  # which needs no hand
     rig.require_good_push()
 
 
@@ -374,4 +375,31 @@ def test_a_retreat_that_is_not_needed_or_not_possible_is_left_out(rig, lift):
     outcome = rig.run(events=[(Phase.PUSH, 0.3, set_arm(pull=np.full(7, 0.05)))])
     assert (outcome.code, outcome.standing) == (ResultCode.PATH_TOLERANCE, True)
     assert ("no way up" in outcome.text) == (lift is None)
+    rig.require_good_push()
+
+
+def test_after_the_retreat_the_arm_leaves_the_cameras_view(rig):
+    rig.clear = True
+    jam, release = set_arm(stuck=np.arange(7) == 1), set_arm(stuck=False)
+    outcome = rig.run(events=[(Phase.PUSH, 0.1, jam), (Phase.STOPPING, 0.15, release)])
+    assert (outcome.code, outcome.standing) == (ResultCode.PATH_TOLERANCE, True)
+    assert outcome.text.endswith("retreated upwards; left the camera's view")
+    np.testing.assert_allclose(rig.arms["left"].q, HOME["left"], atol=LIMITS.goal_tolerance)
+    rig.require_good_push()
+
+
+def test_an_arm_that_is_high_enough_leaves_the_view_at_once(rig):
+    rig.clear, rig.lift = True, 0.0
+    jam, release = set_arm(stuck=np.arange(7) == 1), set_arm(stuck=False)
+    outcome = rig.run(events=[(Phase.APPROACH, 0.1, jam), (Phase.STOPPING, 0.15, release)])
+    assert outcome.text.endswith("rad; left the camera's view")
+    rig.require_good_push()
+
+
+def test_an_arm_that_finds_no_way_out_of_the_view_stays(rig):
+    rig.clear_error = SingulationError(ResultCode.PATH_BLOCKED, "the other arm is in the way")
+    jam, release = set_arm(stuck=np.arange(7) == 1), set_arm(stuck=False)
+    outcome = rig.run(events=[(Phase.PUSH, 0.1, jam), (Phase.STOPPING, 0.15, release)])
+    assert (outcome.code, outcome.standing) == (ResultCode.PATH_TOLERANCE, True)
+    assert "it stays in view: the other arm is in the way" in outcome.text
     rig.require_good_push()

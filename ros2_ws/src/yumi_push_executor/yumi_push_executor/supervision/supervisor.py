@@ -9,6 +9,7 @@ from singulation_core.polygon import FloatArray
 from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.supervision.driver_watch import driver_fault, gripper_fault, may_lift
 from yumi_push_executor.supervision.faults import Fault, Stop
+from yumi_push_executor.supervision.guards import Guards
 from yumi_push_executor.supervision.holding import hold_arm
 from yumi_push_executor.supervision.inputs import DriverStatus, Instant, Sample
 from yumi_push_executor.supervision.limits import SupervisionLimits
@@ -19,10 +20,8 @@ from yumi_push_executor.supervision.settling import Settling
 from yumi_push_executor.supervision.state_watch import StateWatch
 from yumi_push_executor.supervision.trajectory import Trajectory
 
-PlanLift = Callable[[str, FloatArray], Trajectory | None]
-"""Trajectory of a retreat upwards for an arm at (7,) rad; None if it is high enough already; may refuse."""
-
-_FASTEST = 100.0  # simulated seconds per second of a simulation that is believed
+PlanRetreat = Callable[[str, FloatArray], Trajectory | None]
+"""Trajectory for an arm at (7,) rad; None if it stands well already; may refuse."""
 
 
 class _Stage(Enum):
@@ -30,6 +29,7 @@ class _Stage(Enum):
     STOPPING = auto()
     WAITING = auto()  # for the driver to allow a retreat
     LIFTING = auto()
+    CLEARING = auto()  # on the way out of the camera's view
     ENDED = auto()
 
 
@@ -41,7 +41,9 @@ class Supervisor:
         watch: the stream of states; the caller adds each sample to it before it hands the sample to ``step``.
         limits: of the supervision.
         speeds: (7,) fastest joint speeds per arm [rad/s].
-        plan_lift: plans the retreat after a fault.
+        plan_lift: plans the retreat upwards after a fault.
+        plan_clear: plans the way out of the camera's view after that; None leaves the arm where it is, so that nothing
+            behind it is seen.
     """
 
     def __init__(
@@ -50,13 +52,15 @@ class Supervisor:
         watch: StateWatch,
         limits: SupervisionLimits,
         speeds: dict[str, FloatArray],
-        plan_lift: PlanLift,
+        plan_lift: PlanRetreat,
+        plan_clear: PlanRetreat | None = None,
     ) -> None:
         self._segments = tuple(segments)
+        self._needs_hand = any(segment.opening is not None for segment in self._segments)
         self._watch = watch
         self._limits = limits
         self._speeds = speeds
-        self._plan_lift = plan_lift
+        self._plan_lift, self._plan_clear = plan_lift, plan_clear
         self._stage = _Stage.MOVING
         self._run: SegmentRun | None = None
         self._request: Fault | None = None
@@ -64,8 +68,7 @@ class Supervisor:
         self._notes: list[str] = []
         self._settling: Settling | None = None
         self._since = Instant(0.0, 0.0)  # start of the stage WAITING
-        self._last = Instant(0.0, 0.0)
-        self._hiccup = False  # this process did not run for a while before the present step
+        self._guards = Guards(watch, limits)
         self._orders: list[Order] = []
         self._outcome: Outcome | None = None
 
@@ -78,16 +81,18 @@ class Supervisor:
         if not self._segments:
             raise InvalidInputError("motion: it has no segments")
         arm = self._segments[0].arm
-        fault = self._watch.fault(now) or driver_fault(driver, self._limits, now) or gripper_fault(driver, arm)
+        fault = self._watch.fault(now) or driver_fault(driver, self._limits, now)
+        if fault is None and self._needs_hand:
+            fault = gripper_fault(driver, arm)
         if fault is not None:
             raise SingulationError(fault.code, fault.text)
         sample = self._watch.latest
         assert sample is not None  # else the watch had complained
-        if arm not in sample.openings:
+        if self._needs_hand and arm not in sample.openings:
             raise SingulationError(ResultCode.NOT_READY, f"no joint state of the {arm} gripper has come yet")
         check_segments(self._segments, sample, self._watch.ranges, self._speeds, self._limits)
         self._run = SegmentRun(self._segments, self._watch, self._limits)
-        self._last = now
+        self._guards.stepped(now)
         self._orders = self._run.order_next(now.time)
         return self._report()
 
@@ -108,18 +113,21 @@ class Supervisor:
             now: the present.
         """
         self._orders = []
-        if self._stage is _Stage.MOVING or self._stage is _Stage.LIFTING:
+        if self._stage in (_Stage.MOVING, _Stage.LIFTING, _Stage.CLEARING):
             self._move(fresh, driver, now)
         elif self._stage is _Stage.STOPPING:
             self._settle(now)
         elif self._stage is _Stage.WAITING:
             self._wait(driver, now)
-        self._last = now
+        self._guards.stepped(now)
         return self._report()
 
     def _move(self, fresh: Sequence[Sample], driver: DriverStatus | None, now: Instant) -> None:
         run = self._running
-        fault = self._request or self._common_fault(driver, now)
+        moving = self._stage is _Stage.MOVING
+        fault = self._request or self._guards.fault(
+            driver, now, run.segment.arm, hand=moving and self._needs_hand, retreat=not moving
+        )
         for sample in fresh:
             if fault is not None:
                 break
@@ -130,40 +138,7 @@ class Supervisor:
         if fault is not None:
             self._stop(fault, now)
         elif run.done:
-            if self._stage is _Stage.LIFTING:
-                self._notes.append("retreated upwards")
-            self._end(standing=True)
-
-    def _common_fault(self, driver: DriverStatus | None, now: Instant) -> Fault | None:
-        """What is wrong whatever is being done."""
-        return (
-            self._motion_fault(driver, now)
-            or self._blind_fault(now)
-            or self._state_fault(now)
-            or gripper_fault(driver, self._running.segment.arm)
-        )
-
-    def _state_fault(self, now: Instant) -> Fault | None:
-        """States that seem old after a pause of this process may be waiting to be read: judge at the next step."""
-        hiccup = min(now.time - self._last.time, now.wall - self._last.wall) > 0.5 * self._limits.state_age
-        self._hiccup = hiccup and not self._hiccup
-        return None if self._hiccup else self._watch.fault(now)
-
-    def _motion_fault(self, driver: DriverStatus | None, now: Instant) -> Fault | None:
-        if self._stage is _Stage.LIFTING and may_lift(driver, self._limits, now):
-            return None
-        return driver_fault(driver, self._limits, now)
-
-    def _blind_fault(self, now: Instant) -> Fault | None:
-        passed, wall = now.time - self._last.time, now.wall - self._last.wall
-        if not (-self._limits.state_delay <= passed <= _FASTEST * wall + 1.0):
-            text = f"the clock jumped by {passed:.1f} s within {wall:.2f} s of the steady clock"
-            return Fault(ResultCode.TIMEOUT, text, Stop.ALONG_PATH)
-        gap = min(passed, wall)
-        if not (gap <= self._limits.blind_time):
-            text = f"the supervision did not run for {gap:.2f} s, limit {self._limits.blind_time} s"
-            return Fault(ResultCode.TIMEOUT, text, lift=True)
-        return None
+            self._finish_run(now)
 
     def _stop(self, fault: Fault, now: Instant) -> None:
         if self._fault is None:
@@ -200,19 +175,38 @@ class Supervisor:
             self._end(standing=True)
 
     def _lift(self, now: Instant) -> None:
+        if not self._retreat(self._plan_lift, _Stage.LIFTING, "no retreat", now):
+            self._clear(now)
+
+    def _clear(self, now: Instant) -> None:
+        if self._plan_clear is None or not self._retreat(self._plan_clear, _Stage.CLEARING, "it stays in view", now):
+            self._end(standing=True)
+
+    def _finish_run(self, now: Instant) -> None:
+        """The last segment of a motion or of a retreat has ended well."""
+        if self._stage is _Stage.LIFTING:
+            self._notes.append("retreated upwards")
+            self._clear(now)
+            return
+        if self._stage is _Stage.CLEARING:
+            self._notes.append("left the camera's view")
+        self._end(standing=True)
+
+    def _retreat(self, plan: PlanRetreat, stage: _Stage, without: str, now: Instant) -> bool:
+        """Whether a part of the retreat has been ordered."""
         arm, sample = self._running.segment.arm, self._watch.latest
         assert sample is not None
         try:
-            trajectory = self._plan_lift(arm, sample.positions[arm])
+            trajectory = plan(arm, sample.positions[arm])
         except SingulationError as error:
-            self._notes.append(f"no retreat: {error.message}")
-            trajectory = None
+            self._notes.append(f"{without}: {error.message}")
+            return False
         if trajectory is None:
-            self._end(standing=True)
-            return
+            return False
         self._run = SegmentRun((Segment(Phase.STOPPING, arm, trajectory),), self._watch, self._limits)
         self._orders += self._run.order_next(now.time)
-        self._stage = _Stage.LIFTING
+        self._stage = stage
+        return True
 
     def _end(self, standing: bool) -> None:
         self._stage = _Stage.ENDED
