@@ -109,7 +109,8 @@ class CellPart:
     def _start(self, processes: NodeProcesses, observer: Observer) -> None:
         options = self._options
         say(f"simulated cell: {options.objects} blocks, seed {options.seed}, {options.speed:g} times real time")
-        scene = ["--seed", str(options.seed), "--objects", str(options.objects), "--speed", str(options.speed)]
+        blocks = ["--objects", str(options.objects)] if options.objects else ["--scene", "empty"]
+        scene = ["--seed", str(options.seed), "--speed", str(options.speed), *blocks]
         clock = ["--ros-args", "-p", "publish_clock:=true"]  # every node lives in simulated time, at any speed
         processes.start("singulation_sim", "sim_cell", [*scene, *clock])
         for package, executable in _NODES:

@@ -13,7 +13,7 @@ from singulation_sim.scenes.shapes import SHAPES
 
 # The paper's easy sets are squares, its hard sets mix the three shapes; the groups are those of its simulations.
 SCENES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"mixed": ("square", "triangle", "rectangle"), "squares": ("square",)}
+    {"mixed": ("square", "triangle", "rectangle"), "squares": ("square",), "empty": ()}
     | {f"group_{k}": (f"group_{k}",) for k in range(4)}
 )
 _FEWEST, _MOST = 3, 7  # blocks of a set in the paper
@@ -67,7 +67,7 @@ def random_scene(
     """A set of blocks, each close to another, inside the workspace.
 
     Args:
-        scene: one of ``SCENES``.
+        scene: one of ``SCENES``; ``empty`` is a bare table, however many objects are asked for.
         objects: how many; 0 for a random number from 3 to 7 as in the paper.
         seed: same seed, same scene.
         cell: whose workspace.
@@ -85,6 +85,8 @@ def random_scene(
     if not (0.0 <= gaps[0] <= gaps[1] < math.inf):
         raise InvalidInputError(f"scene: gaps {gaps} m, need 0 <= smallest <= largest")
     rng = np.random.default_rng(seed)
+    if not SCENES[scene]:
+        return Arrangement([])
     count = objects or int(rng.integers(_FEWEST, _MOST + 1))
     workspace = (cell or CellGeometry()).workspace
     for _ in range(_TRIES):
