@@ -5,6 +5,7 @@ from collections import OrderedDict
 from singulation_core import Arrangement, ResultCode, SingulationError
 
 _KEPT = 50  # arrangements; five seconds at 10 Hz
+_SAME = 1e-6  # s; two times that differ by the rounding of a float are the same
 
 Stamp = tuple[int, int]
 """Seconds and nanoseconds: two stamps are the same only if both are."""
@@ -58,7 +59,7 @@ class PushGate:
             raise _stale(f"the push was planned on a view {age:.1f} s old, limit {self._max_age} s")
         if not (age >= -self._max_skew):
             raise _stale(f"the push is stamped {-age:.2f} s in the future, limit {self._max_skew} s")
-        if not (time >= self._moved_at):
+        if not (time >= self._moved_at - _SAME):
             since = self._moved_at - time
             raise _stale(f"the push was planned on a view taken {since:.2f} s before the last motion ended; look again")
         return self._arrangement(stamp)

@@ -23,6 +23,7 @@ class Fault:
         stop: where to hold.
         lift: whether a retreat upwards may follow, if the driver allows.
         frozen: whether the measured states are not to be believed: only when they change standstill can be seen.
+        quiet: how long the arm must have stood before it counts as standing [s]; long where an order may yet arrive.
         both_arms: whether the arm that was not to move is held, too.
     """
 
@@ -31,4 +32,5 @@ class Fault:
     stop: Stop = Stop.MEASURED
     lift: bool = False
     frozen: bool = False
+    quiet: float = 0.0
     both_arms: bool = False

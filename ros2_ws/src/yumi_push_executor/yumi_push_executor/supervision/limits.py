@@ -31,8 +31,8 @@ class SupervisionLimits:
     goal_time: float = 1.0  # to settle there; never unlimited
 
     stopped_speed: float = 0.02  # joint speed that counts as standing [rad/s]
-    stop_duration: float = 0.04  # of a stop at least
-    stop_deceleration: float = 30.0  # of the joints, at the beginning of a stop [rad/s^2]
+    stop_duration: float = 0.03  # of a stop at least
+    stop_deceleration: float = 40.0  # of the joints, at the beginning of a stop [rad/s^2]
     stop_speed: float = 1.5  # joint speed of a stop's way back to the measured position [rad/s]
     stop_timeout: float = 1.0  # until standstill must have been seen
     lift_wait: float = 1.5  # for the driver to allow a retreat

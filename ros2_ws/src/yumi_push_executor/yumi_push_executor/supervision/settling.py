@@ -4,11 +4,11 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from yumi_push_executor.kinematics.model import ARMS
-from yumi_push_executor.supervision.inputs import Instant
+from yumi_push_executor.supervision.inputs import Instant, Sample
 from yumi_push_executor.supervision.limits import SupervisionLimits
 from yumi_push_executor.supervision.state_watch import StateWatch
 
-_SPAN = 0.05  # s for which nothing may have moved
+_SPAN = 0.05  # s between the two positions that are compared
 
 
 class Settling:
@@ -17,13 +17,17 @@ class Settling:
     Args:
         sent: when the stop was ordered.
         believe: False if the states are known to be frozen; then only a change of them is believed.
+        quiet: for how long nothing may have moved [s].
         watch: the stream of states.
         limits: of the supervision.
     """
 
-    def __init__(self, sent: Instant, believe: bool, watch: StateWatch, limits: SupervisionLimits) -> None:
+    def __init__(
+        self, sent: Instant, believe: bool, quiet: float, watch: StateWatch, limits: SupervisionLimits
+    ) -> None:
         self._ordered = sent
         self._from = sent.time  # standstill counts from here
+        self._quiet = max(quiet, _SPAN)
         self._watch = watch
         self._limits = limits
         latest = watch.latest
@@ -32,7 +36,7 @@ class Settling:
     def stands(self) -> bool:
         """Whether standstill has been seen."""
         latest = self._watch.latest
-        if latest is None or latest.taken - self._from < _SPAN:
+        if latest is None:
             return False
         if self._doubted is not None:
             if all(np.array_equal(latest.positions[arm], self._doubted[arm]) for arm in ARMS):
@@ -41,12 +45,16 @@ class Settling:
             self._from = latest.taken
             return False
         earlier = self._watch.before(latest.taken - _SPAN)
-        if earlier is None:
-            return False
+        if earlier is None or self._moves(earlier, latest):
+            self._from = latest.taken
+        return latest.taken - self._from >= self._quiet
+
+    def _moves(self, earlier: Sample, latest: Sample) -> bool:
         way = self._limits.stopped_speed * (latest.taken - earlier.taken)
-        return all(float(np.abs(latest.positions[arm] - earlier.positions[arm]).max()) <= way for arm in ARMS)
+        return any(not (np.abs(latest.positions[arm] - earlier.positions[arm]).max() <= way) for arm in ARMS)
 
     def overdue(self, now: Instant) -> bool:
         """Whether standstill should have been seen by now."""
         passed, wall = now.time - self._ordered.time, now.wall - self._ordered.wall
-        return not (min(passed, wall) <= self._limits.stop_timeout) or not (wall <= self._limits.wall_silence)
+        allowed = self._limits.stop_timeout + 2.0 * self._quiet
+        return not (min(passed, wall) <= allowed) or not (wall <= self._limits.wall_silence)

@@ -147,7 +147,7 @@ class Supervisor:
             self._notes.append(f"the retreat was stopped: {fault.text}")
             self._fault = replace(self._fault, lift=False)
         self._orders += self._running.stop_orders(fault, now.time)
-        self._settling = Settling(now, not fault.frozen, self._watch, self._limits)
+        self._settling = Settling(now, not fault.frozen, fault.quiet, self._watch, self._limits)
         self._stage = _Stage.STOPPING
 
     def _settle(self, now: Instant) -> None:

@@ -106,9 +106,11 @@ class FollowingWatch:
         if taken - self.sent - self._visible <= self._limits.start_latency:
             return None
         text = f"the {self._arm} arm has not begun to move {self._limits.start_latency} s after it was ordered to"
+        # The order may be late and not lost: what comes of it must be seen before anything else is ordered.
+        quiet = 2.0 * self._limits.start_latency
         if self._unchanged():
-            return Fault(ResultCode.NO_PROGRESS, f"{text}; its joint states are frozen", frozen=True)
-        return Fault(ResultCode.NO_PROGRESS, text, lift=True)
+            return Fault(ResultCode.NO_PROGRESS, f"{text}; its joint states are frozen", frozen=True, quiet=quiet)
+        return Fault(ResultCode.NO_PROGRESS, text, lift=True, quiet=quiet)
 
     def _error(self, taken: float, positions: FloatArray) -> FloatArray:
         """(7,) distance to the nearest allowed point of the command, each joint [rad]."""
