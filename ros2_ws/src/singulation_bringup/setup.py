@@ -33,7 +33,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
+            "closed_loop_benchmark = singulation_bringup.closed_loop.main:main",
             "singulate_node = singulation_bringup.singulate_node:main",
+            "status = singulation_bringup.commands.status:main",
             "bring_up = singulation_bringup.commands.bring_up:main",
             "dry_run = singulation_bringup.dry_run.dry_run:main",
             "driver_state_adapter = singulation_bringup.adapters.driver_state_adapter:main",

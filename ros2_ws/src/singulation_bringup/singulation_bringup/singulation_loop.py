@@ -67,11 +67,18 @@ class Outcome:
 
 @dataclass(slots=True)
 class Progress:
-    """How far it is: outcomes so far, s(A) and smallest gap before the first push and after each one."""
+    """How far it is.
+
+    Args:
+        outcomes: of the pushes so far.
+        distances, gaps, counts: s(A), smallest gap [m] and number of blocks before the first push and after each one.
+        lost: lasting ids of blocks that are no longer seen.
+    """
 
     outcomes: list[Outcome] = field(default_factory=list)
     distances: list[float] = field(default_factory=list)
     gaps: list[float] = field(default_factory=list)
+    counts: list[int] = field(default_factory=list)
     lost: set[int] = field(default_factory=set)
 
 
@@ -102,6 +109,11 @@ LOOK_AGAIN = {
     ResultCode.STALE_INPUT,
 }
 _MAX_FAILURES_IN_A_ROW = 2
+
+# What a finger needs to come down between two blocks: 12 mm wide at its tip, and it may stand at any heading [m].
+DEFAULT_MIN_GAP = 0.012
+# Asked in this order when a planned push cannot be performed.
+FALLBACK_POLICIES = ("min_overlap", "center_object_removal", "cluster_diffusion", "boundary_shear")
 
 ProgressCallback = Callable[[Progress], None]
 
@@ -171,6 +183,7 @@ class SingulationLoop:
         self._progress.lost = (self._progress.lost | set(tracked.lost)) - set(tracked.lasting_ids.values())
         self._progress.distances.append(singulation_distance(seen, self._unit))
         self._progress.gaps.append(smallest_gap(seen))
+        self._progress.counts.append(len(seen))
         self._report(self._progress)
         return seen, tracked
 
@@ -201,10 +214,11 @@ class SingulationLoop:
         raise SingulationError(ResultCode.NO_HELPFUL_PUSH, "; ".join(refusals))
 
     def _record(self, push: Push, failure: SingulationError | None, before: Tracked, after: Tracked) -> None:
-        distances, gaps = self._progress.distances, self._progress.gaps
+        distances, gaps, counts = self._progress.distances, self._progress.gaps, self._progress.counts
         if after is before:  # no look followed; there is still one value for every push
             distances.append(distances[-1])
             gaps.append(gaps[-1])
+            counts.append(counts[-1])
         outcome = Outcome(
             _with_lasting_target(push, before),
             ResultCode.OK if failure is None else failure.code,

@@ -26,6 +26,9 @@ class CellSetting:
         push_distance_factor: travel after contact [mean bounding radii of the scene].
         physics: of the table: a preset of ``PushPhysics``, or ``sampled``: friction from N(0.5, 0.1) and density from
             N(1.0, 0.2) for each set, as in the paper's simulations (section V-A), which the planner does not know.
+        fits: which jaws must be free at the start: those of the ``contact_mode``, or those of ``every_mode``, so that
+            all modes do the same pushes.
+        retreat: how far a blocked start may be moved back on its line [m]; 0: the policy's next push instead.
         camera: image size, ``small`` or ``full``.
         noise: of the camera along the ray [m].
         scan_time: from trigger to cloud [s].
@@ -40,6 +43,8 @@ class CellSetting:
 
     push_distance_factor: float = PUSH_DISTANCE_FACTOR
     physics: str = SAMPLED
+    fits: str = Placement().fits
+    retreat: float = Placement().retreat
     camera: str = "small"
     noise: float = SensorDefects().noise
     scan_time: float = 0.25
@@ -51,7 +56,7 @@ class CellSetting:
     def __post_init__(self) -> None:
         if self.camera not in CAMERAS:
             raise InvalidInputError(f"closed loop: camera {self.camera!r}, need one of {', '.join(CAMERAS)}")
-        self.table_physics(0)
+        _ = self.table_physics(0), self.placement
 
     @property
     def camera_model(self) -> CameraModel:
@@ -66,8 +71,8 @@ class CellSetting:
 
     @property
     def placement(self) -> Placement:
-        """As ``planner_node`` has it."""
-        return Placement()
+        """How starts are chosen."""
+        return Placement(fits=self.fits, retreat=self.retreat)  # type: ignore[arg-type]  # it checks ``fits`` itself
 
     def table_physics(self, seed: int) -> PushPhysics:
         """Of the blocks that really lie there."""

@@ -1,6 +1,5 @@
 """The simulated robot under the executor's own supervision, in simulated time."""
 
-import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -115,21 +114,21 @@ class SupervisedRobot:
 
     def _run(self, segments: Sequence[Segment]) -> Outcome:
         supervisor = Supervisor(segments, self._watch, self._limits, self._speeds, self._lift)
-        self._listen()
         began = self._now
-        step = supervisor.start(self._status(), self._instant())
-        while step.outcome is None:
+        with self._stopwatch.timed("supervise"):
+            self._listen()
+            step = supervisor.start(self._status(), self._instant())
             self._obey(step.orders)
-            self._pass_time()
-            fresh = self._listen()
-            started = time.process_time()
-            if self._cancelled():
-                supervisor.cancel()
-            step = supervisor.step(fresh, self._status(), self._instant())
-            self._stopwatch.add("supervise", time.process_time() - started)
+        while step.outcome is None:
+            with self._stopwatch.timed("simulate"):
+                self._pass_time()
+            with self._stopwatch.timed("supervise"):
+                if self._cancelled():
+                    supervisor.cancel()
+                step = supervisor.step(self._listen(), self._status(), self._instant())
+                self._obey(step.orders)
             if self._now - began > _LONGEST:
                 raise SingulationError(ResultCode.INTERNAL, f"the supervision did not end within {_LONGEST} s")
-        self._obey(step.orders)
         self.moved += self._now - began
         return step.outcome
 
@@ -138,10 +137,9 @@ class SupervisedRobot:
         return self._cell.now
 
     def _pass_time(self) -> None:
-        with self._stopwatch.timed("simulate"):
-            for _ in range(_CYCLES_PER_STATE):
-                self._cell.step()
-            self._on_cycle(self._cell)
+        for _ in range(_CYCLES_PER_STATE):
+            self._cell.step()
+        self._on_cycle(self._cell)
 
     def _listen(self) -> list[Sample]:
         states = self._cell.driver.joint_states()

@@ -1,0 +1,1 @@
+"""The closed loop: see ``singulation_bringup.closed_loop.main``."""
