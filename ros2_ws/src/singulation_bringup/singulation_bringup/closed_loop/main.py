@@ -8,6 +8,7 @@ from pathlib import Path
 
 from singulation_bringup.closed_loop.endurance import endure
 from singulation_bringup.closed_loop.figure import picture_of_separation
+from singulation_bringup.closed_loop.readings import run_readings
 from singulation_bringup.closed_loop.runs import run_all
 from singulation_bringup.closed_loop.sets import COUNTS, MODES, one_push_trials, separate_trials
 from singulation_bringup.closed_loop.setting import CAMERAS, SAMPLED, CellSetting
@@ -61,6 +62,11 @@ def _parser() -> argparse.ArgumentParser:
     apart.add_argument("--contact-modes", nargs="+", default=list(MODES[:1]), choices=MODES)
     apart.add_argument("--counts", type=int, nargs="+", default=list(COUNTS), help="numbers of blocks")
     _add_common(apart, _separate)
+    other = commands.add_parser("readings", help="Table III under other readings of what the paper leaves open")
+    other.add_argument("--sets", type=_positive, default=5, help="of each configuration (default: %(default)s)")
+    other.add_argument("--out", type=Path, default=_OUT / "readings", help="folder of the results")
+    other.add_argument("--workers", type=_positive, default=os.cpu_count() or 1, help="processes (default: all cores)")
+    other.set_defaults(command=lambda options: print(run_readings(options.sets, options.out, options.workers)))
     long = commands.add_parser("endurance", help="many cycles in a row: memory, threads, file handles")
     long.add_argument("--cycles", type=_positive, default=200, help="pushes (default: %(default)s)")
     long.add_argument("--out", type=Path, default=_OUT, help="folder of the results (default: %(default)s)")

@@ -35,7 +35,7 @@ def table_three(records: Sequence[Record]) -> str:
     if found.empty:
         return ""
     sets = found[_ROW].drop_duplicates()
-    easy, hard = int(_mask(sets, "easy").sum()), int(_mask(sets, "hard").sum())
+    easy, hard = int(group_of(sets, "easy").sum()), int(group_of(sets, "hard").sum())
     parts = [
         "## Table III: one push in the closed loop\n",
         f"{len(sets)} sets in {len(sets[['kind', 'blocks']].drop_duplicates())} configurations; easy: three squares "
@@ -60,13 +60,14 @@ def table_three(records: Sequence[Record]) -> str:
     return "\n".join(parts)
 
 
-def _mask(found: pd.DataFrame, group: str) -> "pd.Series[bool]":
+def group_of(found: pd.DataFrame, group: str) -> "pd.Series[bool]":
+    """Which rows are easy, hard, or counted in the average."""
     if group == "easy":
         return (found["kind"] == EASY.kind) & (found["blocks"] == EASY.blocks)
     return (found["kind"] == MIXED) if group == "hard" else found["kind"].notna()
 
 
-def _paired(found: pd.DataFrame, value: str) -> pd.DataFrame:
+def paired_gains(found: pd.DataFrame, value: str) -> pd.DataFrame:
     """Sets (rows) by (policy, contact mode)."""
     return found.pivot(index=_ROW, columns=["policy", "contact_mode"], values=value)
 
@@ -75,15 +76,15 @@ def _values(found: pd.DataFrame, value: str, text: Callable[[Estimate], str], pa
     rows = []
     for (policy, mode), theirs in TABLE_III.items():
         of_row = found[(found["policy"] == policy) & (found["contact_mode"] == mode)]
-        numbers = [text(mean(of_row.loc[_mask(of_row, group), value].to_numpy())) for group in _GROUPS]
+        numbers = [text(mean(of_row.loc[group_of(of_row, group), value].to_numpy())) for group in _GROUPS]
         rows.append([f"{mode}, {policy}", *numbers, *([f"{one:.3f}" for one in theirs] if paper else [])])
     return table(["", *_GROUPS, *([f"paper: {group}" for group in _GROUPS] if paper else [])], rows)
 
 
 def _ahead(found: pd.DataFrame) -> str:
     rows = []
-    gains = _paired(found, "gain")
-    groups = {group: _mask(gains.reset_index(), group).to_numpy() for group in _GROUPS}
+    gains = paired_gains(found, "gain")
+    groups = {group: group_of(gains.reset_index(), group).to_numpy() for group in _GROUPS}
     ours, theirs = TABLE_POLICIES
     for mode in MODES:
         for k, (group, chosen) in enumerate(groups.items()):
@@ -96,7 +97,7 @@ def _ahead(found: pd.DataFrame) -> str:
 
 def _improvement(found: pd.DataFrame) -> str:
     rows = []
-    gains = _paired(found, "gain")
+    gains = paired_gains(found, "gain")
     for mode, text in IMPROVEMENT.items():
         for policies in (*((one,) for one in TABLE_POLICIES), TABLE_POLICIES):
             first, base = (sum(gains[one, kind].to_numpy() for one in policies) for kind in (mode, "single_point"))
