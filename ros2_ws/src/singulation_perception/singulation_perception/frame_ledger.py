@@ -27,6 +27,8 @@ class LedgerState:
         stages: median milliseconds of each stage.
         last_error: text of the last rejection, empty before.
         healthy: whether the newest finished cloud was published.
+        lost: clouds that the middleware could not deliver; they never came in and are not part of ``received``.
+        since_loss: since the last of them [s], infinite if there was none.
     """
 
     received: int
@@ -40,6 +42,8 @@ class LedgerState:
     stages: Mapping[str, float]
     last_error: str
     healthy: bool
+    lost: int
+    since_loss: float
 
 
 class FrameLedger:
@@ -54,6 +58,12 @@ class FrameLedger:
         self._age = float("nan")
         self._last_error = ""
         self._healthy = True
+        self._lost, self._last_loss = 0, float("-inf")
+
+    def lost(self, count: int, now: float) -> None:
+        """The middleware says that clouds did not arrive, ``count`` in all so far."""
+        with self._lock:
+            self._lost, self._last_loss = count, now
 
     def received(self, now: float) -> None:
         """A cloud came in."""
@@ -96,6 +106,8 @@ class FrameLedger:
                 stages={name: median(one[name] for one in self._stages if name in one) for name in sorted(names)},
                 last_error=self._last_error,
                 healthy=self._healthy,
+                lost=self._lost,
+                since_loss=now - self._last_loss,
             )
 
     def _rate(self) -> float:

@@ -24,9 +24,15 @@ def report_clouds(diagnostics: Any, state: LedgerState, settings: PerceptionSett
 
 
 def _report_input(diagnostics: Any, state: LedgerState, settings: PerceptionSettings, publishers: int) -> None:
-    values = {"publishers": publishers, "rate [Hz]": state.rate, "last cloud [s ago]": state.quiet}
+    values = {"publishers": publishers, "rate [Hz]": state.rate, "last cloud [s ago]": state.quiet, "lost": state.lost}
     if publishers == 0:
         diagnostics.warn("input", "nobody publishes clouds on points", **values)
+    elif state.since_loss <= settings.quiet_after:
+        diagnostics.warn(
+            "input",
+            "clouds are lost on their way to this node; does the camera's process use fastdds_large_clouds.xml?",
+            **values,
+        )
     elif publishers > 1:
         diagnostics.warn("input", f"{publishers} publishers on points: their clouds are mixed", **values)
     elif not (state.quiet <= settings.quiet_after):

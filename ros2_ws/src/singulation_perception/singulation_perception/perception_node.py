@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import PointCloud2
 from singulation_msgs.msg import Arrangement
 from std_msgs.msg import Header
@@ -73,7 +74,8 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
         """Begin to take clouds."""
         self._stream = _Stream(StampOrder())
         self._worker = LatestWorker(self._process, lambda _: self.ledger.superseded(), "segmentation")
-        self._points = self.create_subscription(PointCloud2, "points", self._take, SENSOR_IN)
+        events = SubscriptionEventCallbacks(message_lost=self._note_loss)
+        self._points = self.create_subscription(PointCloud2, "points", self._take, SENSOR_IN, event_callbacks=events)
         self.create_timer(_REPORT_PERIOD, self._report)
 
     def deactivate(self) -> None:
@@ -95,6 +97,10 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
             self.ledger.superseded()
         else:
             worker.offer(message)
+
+    @guarded
+    def _note_loss(self, event: Any) -> None:
+        self.ledger.lost(event.total_count, time.monotonic())
 
     def _process(self, message: PointCloud2) -> None:
         """One cloud, one outcome. Runs in the worker's thread."""

@@ -78,3 +78,12 @@ def test_counting_from_many_threads_loses_nothing():
         thread.join(timeout=30)
     state = ledger.state(1.0)
     assert (state.received, state.superseded, state.pending) == (2000, 2000, 0)
+
+
+def test_clouds_that_never_came_are_counted_apart():
+    ledger = FrameLedger()
+    assert ledger.state(3.0).since_loss == float("inf")
+    ledger.lost(2, 1.0)
+    ledger.lost(5, 2.0)
+    state = ledger.state(3.0)
+    assert (state.received, state.lost, state.since_loss) == (0, 5, 1.0)
