@@ -19,7 +19,7 @@ from benchmarks.perception.scenes import AREA, FULL, HALF, Scene, make_scene
 from benchmarks.transport.processes import ECHO, PERCEPTION, RELIABLE_ECHO, SETTINGS
 
 from singulation_core.transforms import quaternion_of
-from singulation_node import testing
+from singulation_node.domain import reserved_domain
 
 _LIMIT = 300.0  # s for one row
 
@@ -66,7 +66,7 @@ def main() -> int:
 
 
 def _row(scene: Scene, settings: str, receiver: str, repeats: int) -> Row:
-    with tempfile.TemporaryDirectory() as folder, testing.reserved_domain() as domain:
+    with tempfile.TemporaryDirectory() as folder, reserved_domain() as domain:
         path = Path(folder) / "cloud.npy"
         np.save(path, scene.points)
         environment = {**os.environ, "ROS_DOMAIN_ID": str(domain)}

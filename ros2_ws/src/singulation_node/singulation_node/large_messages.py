@@ -16,6 +16,7 @@ PROFILE = Path(__file__).with_name("fastdds_large_clouds.xml")
 PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 
 _SHARED_MEMORY = Path("/dev/shm")
+_PROCESSES = 6  # of one cell that handle clouds, or inherit the profile from one that does
 _M_TRIM_THRESHOLD, _M_MMAP_MAX, _M_ARENA_MAX = -1, -4, -8  # malloc.h of glibc
 _NEVER_TRIM = 2**31 - 1
 
@@ -27,13 +28,17 @@ def prepare_for_large_messages() -> bool:
         Whether large messages will arrive reliably; if not, the reason has been printed.
     """
     _keep_memory()
-    if os.environ.get(PROFILE_VARIABLE):
+    chosen = os.environ.get(PROFILE_VARIABLE)
+    if chosen and chosen != str(PROFILE):
         return True
-    needed, free = segment_size(), shared_memory_free()
+    # A process that has the profile from its parent needs room for itself, the first one for all that may follow.
+    processes = 1 if chosen else _PROCESSES
+    needed, free = processes * segment_size(), shared_memory_free()
     if free < needed:
+        os.environ.pop(PROFILE_VARIABLE, None)
         print(
-            f"warning: {_SHARED_MEMORY} has {free >> 20} MB free, but every process with large clouds needs "
-            f"{needed >> 20} MB; clouds may get lost. In a container: docker run --shm-size=1g, or --ipc=host",
+            f"warning: {_SHARED_MEMORY} has {free >> 20} MB free, large clouds need {needed >> 20} MB; clouds may get "
+            "lost. In a container: docker run --shm-size=1g, or --ipc=host",
             file=sys.stderr,
         )
         return False

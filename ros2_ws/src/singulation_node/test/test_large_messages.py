@@ -37,11 +37,19 @@ def test_the_users_own_profile_stays(plenty, monkeypatch):
     assert os.environ[PROFILE_VARIABLE] == "/etc/my_profile.xml"
 
 
-def test_too_little_shared_memory_is_said_and_nothing_is_changed(plenty, monkeypatch, capsys):
-    monkeypatch.setattr(large_messages, "shared_memory_free", lambda: segment_size() - 1)
+@pytest.mark.parametrize(("inherited", "segments"), [(False, 5.9), (True, 0.9)])
+def test_too_little_shared_memory_is_said_and_the_profile_is_not_used(plenty, monkeypatch, capsys, inherited, segments):
+    monkeypatch.setenv(PROFILE_VARIABLE, str(PROFILE) if inherited else "")
+    monkeypatch.setattr(large_messages, "shared_memory_free", lambda: int(segments * segment_size()))
     assert not prepare_for_large_messages()
     assert PROFILE_VARIABLE not in os.environ
     assert "--shm-size=1g" in capsys.readouterr().err
+
+
+def test_a_child_needs_room_for_itself_only(plenty, monkeypatch):
+    monkeypatch.setenv(PROFILE_VARIABLE, str(PROFILE))
+    monkeypatch.setattr(large_messages, "shared_memory_free", lambda: int(1.1 * segment_size()))
+    assert prepare_for_large_messages()
 
 
 def test_fast_dds_takes_the_profile():
