@@ -17,10 +17,12 @@ from singulation_core import (
 from singulation_core import contact_mode as as_contact_mode
 from singulation_core.push_world.physics import PushPhysics
 from singulation_planner.best_mode import best_of_modes
-from singulation_planner.placement import Placement, clearance_of, make_placer, workspace_walls
+from singulation_planner.placement import Placement, clearance_of
+from singulation_planner.placer import make_placer
 from singulation_planner.policies import find_policy
 from singulation_planner.policy import Policy, Task
 from singulation_planner.scene import Scene
+from singulation_planner.workspace import workspace_walls
 
 # Travel after contact in mean bounding radii. The paper does not give it; its tables fit 0.7 to 1.
 PUSH_DISTANCE_FACTOR = 1.0

@@ -10,7 +10,7 @@ import numpy as np
 from singulation_core import InvalidInputError
 from singulation_core.push_world.physics import PushPhysics
 from singulation_planner.candidates import Candidates
-from singulation_planner.placement import Placer
+from singulation_planner.placer import Placer
 from singulation_planner.scene import Scene
 
 

@@ -10,9 +10,10 @@ from singulation_core.polygon import inward_half_planes, separation
 from singulation_core.push_world import simulate_push
 from singulation_planner import Placement, plan_push
 from singulation_planner.candidates import Candidates
-from singulation_planner.placement import make_placer, workspace_walls
+from singulation_planner.placer import make_placer
 from singulation_planner.scene import Scene
 from singulation_planner.testing import clutter, squares
+from singulation_planner.workspace import workspace_walls
 
 PUSHER = PusherGeometry(0.006, 0.0124, 0.012)
 CLEARANCE = PUSHER.tip_radius / 6.0

@@ -152,6 +152,7 @@ def test_unknown_names_are_answered_with_the_known_ones():
         ({"push_distance_factor": float("inf")}, "inf"),
         ({"workspace": [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)]}, "clockwise"),
         ({"workspace": [(0.0, 0.0), (1.0, 0.0)]}, "shape"),
+        ({"workspace": [(0.0, 0.0), (1.0, 0.0), (1.0,)]}, "workspace"),
         ({"policy": "brute_force", "offsets": 0}, "positive int"),
         ({"policy": "brute_force", "max_objects": 2}, "3 objects"),
         ({"policy": "quasi_random", "case_one": "both"}, "none"),

@@ -10,6 +10,9 @@ from singulation_planner.kernels.types import IntArray
 FEASIBLE, MISSES, BLOCKED, OUTSIDE, OVER_EDGE, UNTRIED = 0, 1, 2, 3, 4, 5
 _SINGLE_POINT, _EDGE, _TWO_POINT = 0, 1, 2
 
+# Centroids (n, 2), bounding radii (n,), vertices (v, 2), first vertex of each object (n + 1,), as in ``Scene``.
+Shapes = tuple[FloatArray, FloatArray, FloatArray, IntArray]
+
 
 @njit(cache=True)
 def _disc_contact(
@@ -134,10 +137,7 @@ def _start(
 @njit(cache=True)
 def _fits(
     mode: int,
-    centroids: FloatArray,
-    radii: FloatArray,
-    vertices: FloatArray,
-    firsts: IntArray,
+    shapes: Shapes,
     px: float,
     py: float,
     dx: float,
@@ -147,6 +147,7 @@ def _fits(
     pusher: FloatArray,
 ) -> bool:
     """Whether the pusher at (px, py) keeps its clearance from every object but the target."""
+    centroids, radii, vertices, firsts = shapes
     tip, half, back, slack = pusher[0], pusher[1], pusher[2], pusher[3] * (1.0 - 1e-9)
     size = np.hypot(half, back) if mode == _EDGE else tip + jaw
     for j in range(len(radii)):
@@ -168,8 +169,7 @@ def _fits(
 @njit(cache=True)
 def _inside(
     mode: int,
-    normals: FloatArray,
-    limits: FloatArray,
+    walls: tuple[FloatArray, FloatArray],
     px: float,
     py: float,
     dx: float,
@@ -178,6 +178,7 @@ def _inside(
     pusher: FloatArray,
 ) -> bool:
     """Whether the whole footprint lies inside the workspace."""
+    normals, limits = walls
     for k in range(len(limits)):
         nx, ny = normals[k, 0], normals[k, 1]
         across, along = abs(ny * dx - nx * dy), nx * dx + ny * dy
@@ -190,13 +191,46 @@ def _inside(
 
 
 @njit(cache=True)
+def _place_one(
+    mode: int,
+    from_circle: bool,
+    shapes: Shapes,
+    i: int,
+    dx: float,
+    dy: float,
+    offset: float,
+    jaw: float,
+    pusher: FloatArray,
+    ways: FloatArray,
+    walls: tuple[FloatArray, FloatArray],
+    start: FloatArray,
+) -> int:
+    """``place`` for one candidate and one contact mode."""
+    centroids, radii, vertices, firsts = shapes
+    x, y = centroids[i, 0] - dy * offset, centroids[i, 1] + dx * offset
+    at = _start(mode, from_circle, vertices, firsts[i], firsts[i + 1], radii[i], x, y, dx, dy, offset, jaw, pusher)
+    if at == np.inf:
+        return MISSES
+    lowest = at - ways[1]
+    start[0], start[1] = x + at * dx, y + at * dy
+    while not _fits(mode, shapes, start[0], start[1], dx, dy, i, jaw, pusher):
+        at -= ways[2]
+        if at < lowest:
+            return BLOCKED
+        start[0], start[1] = x + at * dx, y + at * dy
+    end_x, end_y = start[0] + ways[0] * dx, start[1] + ways[0] * dy
+    if _inside(mode, walls, start[0], start[1], dx, dy, jaw, pusher) and _inside(
+        mode, walls, end_x, end_y, dx, dy, jaw, pusher
+    ):
+        return FEASIBLE
+    return OUTSIDE
+
+
+@njit(cache=True)
 def place(
     modes: IntArray,
     from_circle: bool,
-    centroids: FloatArray,
-    radii: FloatArray,
-    vertices: FloatArray,
-    firsts: IntArray,
+    shapes: Shapes,
     objects: IntArray,
     directions: FloatArray,
     offsets: FloatArray,
@@ -204,11 +238,8 @@ def place(
     all_of_them: bool,
     jaws: FloatArray,
     pusher: FloatArray,
-    retreat: float,
-    retreat_step: float,
-    travel: float,
-    normals: FloatArray,
-    limits: FloatArray,
+    ways: FloatArray,
+    walls: tuple[FloatArray, FloatArray],
     starts: FloatArray,
     status: IntArray,
 ) -> int:
@@ -217,15 +248,14 @@ def place(
     Args:
         modes: contact modes whose pusher must be free; the first one performs the push.
         from_circle: whether to start at the bounding circle instead of at the outline.
-        centroids, radii, vertices, firsts: the scene.
+        shapes: the scene.
         objects, directions, offsets: (m,), (m, 2), (m,) candidates.
         begin: index of the first candidate to look at.
         all_of_them: go on after the first feasible candidate.
         jaws: (n,) half the distance of two points on each object [m].
         pusher: tip radius, half edge width, edge thickness, clearance [m].
-        retreat, retreat_step: how far a blocked start may be moved back, and in which steps [m].
-        travel: from start to end [m].
-        normals, limits: inward half planes of the workspace; none: unbounded.
+        ways: travel from start to end, how far a blocked start may be moved back, and in which steps [m].
+        walls: inward half planes of the workspace: normals (k, 2), offsets (k,); none: unbounded.
         starts: (m, 2), written.
         status: (m,), written.
 
@@ -235,37 +265,16 @@ def place(
     found = -1
     for c in range(begin, len(objects)):
         i, dx, dy = objects[c], directions[c, 0], directions[c, 1]
-        x, y = centroids[i, 0] - dy * offsets[c], centroids[i, 1] + dx * offsets[c]
-        status[c] = FEASIBLE
         for m in range(len(modes) - 1, -1, -1):  # the pushing mode last, so that the start written is its own
             mode = modes[m]
             jaw = jaws[i] if mode == _TWO_POINT else 0.0
-            first, last = firsts[i], firsts[i + 1]
-            at = _start(mode, from_circle, vertices, first, last, radii[i], x, y, dx, dy, offsets[c], jaw, pusher)
-            if at == np.inf:
-                status[c] = MISSES
-                break
-            lowest = at - retreat
-            px, py = x + at * dx, y + at * dy
-            free = _fits(mode, centroids, radii, vertices, firsts, px, py, dx, dy, i, jaw, pusher)
-            while not free and at - retreat_step >= lowest:
-                at -= retreat_step
-                px, py = x + at * dx, y + at * dy
-                free = _fits(mode, centroids, radii, vertices, firsts, px, py, dx, dy, i, jaw, pusher)
-            starts[c, 0], starts[c, 1] = px, py
-            if not free:
-                status[c] = BLOCKED
-                break
-            qx, qy = px + travel * dx, py + travel * dy
-            if not (
-                _inside(mode, normals, limits, px, py, dx, dy, jaw, pusher)
-                and _inside(mode, normals, limits, qx, qy, dx, dy, jaw, pusher)
-            ):
-                status[c] = OUTSIDE
+            status[c] = _place_one(
+                mode, from_circle, shapes, i, dx, dy, offsets[c], jaw, pusher, ways, walls, starts[c]
+            )
+            if status[c] != FEASIBLE:
                 break
         if status[c] == FEASIBLE:
-            if found < 0:
-                found = c
+            found = c if found < 0 else found
             if not all_of_them:
                 break
     return found
