@@ -6,9 +6,11 @@ copies between two Python processes, in about 20 ms. ``scripts/bench transport``
 """
 
 import ctypes
+import fcntl
 import os
 import shutil
 import sys
+import time
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -17,6 +19,7 @@ PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 
 _SHARED_MEMORY = Path("/dev/shm")
 _PROCESSES = 6  # of one cell that handle clouds, or inherit the profile from one that does
+_YOUNG = 10.0  # s in which its owner may not have taken the lock yet
 _M_TRIM_THRESHOLD, _M_MMAP_MAX, _M_ARENA_MAX = -1, -4, -8  # malloc.h of glibc
 _NEVER_TRIM = 2**31 - 1
 
@@ -33,7 +36,10 @@ def prepare_for_large_messages() -> bool:
         return True
     # A process that has the profile from its parent needs room for itself, the first one for all that may follow.
     processes = 1 if chosen else _PROCESSES
-    needed, free = processes * segment_size(), shared_memory_free()
+    needed = processes * segment_size()
+    if shared_memory_free() < needed:
+        remove_abandoned_segments()
+    free = shared_memory_free()
     if free < needed:
         os.environ.pop(PROFILE_VARIABLE, None)
         print(
@@ -57,6 +63,27 @@ def segment_size() -> int:
 def shared_memory_free() -> int:
     """Room for shared-memory segments on this machine [bytes], 0 if there is none at all."""
     return shutil.disk_usage(_SHARED_MEMORY).free if _SHARED_MEMORY.is_dir() else 0
+
+
+def remove_abandoned_segments() -> int:
+    """Free the shared memory of processes that were killed (as ``fastdds shm clean`` does); how many segments.
+
+    The owner of a segment holds a lock on the file beside it as long as it lives.
+    """
+    removed = 0
+    for lock in _SHARED_MEMORY.glob("fastrtps_*_el"):
+        segment = lock.with_name(lock.name.removesuffix("_el"))
+        try:
+            if time.time() - lock.stat().st_mtime < _YOUNG:
+                continue
+            with lock.open("rb") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                segment.unlink(missing_ok=True)
+                lock.unlink()
+                removed += 1
+        except OSError:  # in use, not ours, or somebody else was faster
+            continue
+    return removed
 
 
 def _keep_memory() -> None:

@@ -1,3 +1,4 @@
+import fcntl
 import os
 import subprocess
 import sys
@@ -6,7 +7,13 @@ from xml.etree import ElementTree
 import pytest
 
 from singulation_node import large_messages
-from singulation_node.large_messages import PROFILE, PROFILE_VARIABLE, prepare_for_large_messages, segment_size
+from singulation_node.large_messages import (
+    PROFILE,
+    PROFILE_VARIABLE,
+    prepare_for_large_messages,
+    remove_abandoned_segments,
+    segment_size,
+)
 
 LARGEST_CLOUD = 2064 * 1544 * 16  # bytes: full PhoXi image with colours
 FRAGMENT = 65_000  # bytes, a little less than what a UDP packet holds
@@ -50,6 +57,32 @@ def test_a_child_needs_room_for_itself_only(plenty, monkeypatch):
     monkeypatch.setenv(PROFILE_VARIABLE, str(PROFILE))
     monkeypatch.setattr(large_messages, "shared_memory_free", lambda: int(1.1 * segment_size()))
     assert prepare_for_large_messages()
+
+
+def test_only_segments_whose_owner_is_gone_are_removed(tmp_path, monkeypatch):
+    monkeypatch.setattr(large_messages, "_SHARED_MEMORY", tmp_path)
+    names = ("fastrtps_used", "fastrtps_left", "fastrtps_fresh")
+    for name in names:
+        (tmp_path / name).write_bytes(b"segment")
+        (tmp_path / f"{name}_el").touch()
+    for name in names[:2]:
+        os.utime(tmp_path / f"{name}_el", (1.0, 1.0))
+    (tmp_path / "somebody_elses_file").touch()
+    with (tmp_path / "fastrtps_used_el").open() as owner:
+        fcntl.flock(owner, fcntl.LOCK_EX)
+        assert remove_abandoned_segments() == 1
+    left = {path.name for path in tmp_path.iterdir()}
+    assert "fastrtps_left" not in left
+    assert {"fastrtps_used", "fastrtps_fresh", "somebody_elses_file"} < left
+
+
+def test_what_killed_processes_left_makes_room(plenty, monkeypatch):
+    rooms = iter((segment_size(), 6 * segment_size()))
+    cleaned = []
+    monkeypatch.setattr(large_messages, "shared_memory_free", lambda: next(rooms))
+    monkeypatch.setattr(large_messages, "remove_abandoned_segments", lambda: cleaned.append(True))
+    assert prepare_for_large_messages()
+    assert cleaned
 
 
 def test_fast_dds_takes_the_profile():
