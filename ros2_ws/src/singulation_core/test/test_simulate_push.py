@@ -178,7 +178,7 @@ def test_a_push_from_inside_a_block_is_refused_and_the_others_are_done(scene_of)
     outcomes = simulate_pushes(scene, [good[0], inside, good[1]], None, JAWS)
     assert outcomes.codes == (ResultCode.OK, ResultCode.PATH_BLOCKED, ResultCode.OK)
     assert np.isnan(outcomes.gains()).tolist() == [False, True, False]
-    with pytest.raises(SingulationError, match="push 1 was not simulated"):
+    with pytest.raises(SingulationError, match="push 1 was not simulated: its pusher would start on a block"):
         outcomes.arrangement(1)
     assert len(outcomes.arrangement(2)) == len(scene)
 

@@ -15,10 +15,14 @@ from singulation_core.push_world.displaced import displaced
 from singulation_core.push_world.footprint import pusher_footprint
 from singulation_core.push_world.physics import PushPhysics
 from singulation_core.push_world.plane_frame import PlaneFrame
-from singulation_core.push_world.world import PushWorld
+from singulation_core.push_world.world import PushWorld, unit_of
 from singulation_core.result_code import ResultCode
 
 _PUSHER = "pusher"
+_REASONS = {
+    ResultCode.PATH_BLOCKED: "its pusher would start on a block; it must start on free table",
+    ResultCode.INTERNAL: "the solver diverged",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +64,7 @@ class PushOutcomes:
             SingulationError: with the code of that push if it was not simulated.
         """
         if self.codes[index] is not ResultCode.OK:
-            raise SingulationError(self.codes[index], f"push {index} was not simulated, it has no outcome")
+            raise SingulationError(self.codes[index], f"push {index} was not simulated: {_REASONS[self.codes[index]]}")
         return displaced(self.before, self.poses[index])
 
 
@@ -87,7 +91,10 @@ def simulate_push(
         SingulationError: ``PATH_BLOCKED`` if the pusher would start on a block, ``OVERLAPPING_OBJECTS`` if blocks
             overlap by more than noise explains, ``INTERNAL`` if the solver diverges.
     """
-    world = PushWorld(arrangement, physics, unit)
+    used = physics or PushPhysics.quasi_static()
+    if used.engine == "compiled":
+        return simulate_pushes(arrangement, [push], used, pusher, unit).arrangement(0)
+    world = PushWorld(arrangement, used, unit)
     _perform(world, push, pusher or PusherGeometry())
     return world.arrangement()
 
@@ -106,7 +113,17 @@ def simulate_pushes(
     Raises:
         SingulationError: ``OVERLAPPING_OBJECTS`` as for one push.
     """
-    jaws = pusher or PusherGeometry()
+    used, jaws = physics or PushPhysics.quasi_static(), pusher or PusherGeometry()
+    if used.engine == "compiled":
+        poses, codes = _all_compiled(arrangement, pushes, used, jaws, unit)
+    else:
+        poses, codes = _all_by_pymunk(arrangement, pushes, used, jaws, unit)
+    return PushOutcomes(arrangement, poses, tuple(codes))
+
+
+def _all_by_pymunk(
+    arrangement: Arrangement, pushes: Sequence[Push], physics: PushPhysics, jaws: PusherGeometry, unit: float | None
+) -> tuple[FloatArray, list[ResultCode]]:
     world, present = PushWorld(arrangement, physics, unit), None
     poses = np.full((len(pushes), len(arrangement), 3), np.nan)
     codes = []
@@ -121,7 +138,24 @@ def simulate_pushes(
             codes.append(ResultCode.OK)
         except SingulationError as error:
             codes.append(error.code)
-    return PushOutcomes(arrangement, poses, tuple(codes))
+    return poses, codes
+
+
+def _all_compiled(
+    arrangement: Arrangement, pushes: Sequence[Push], physics: PushPhysics, jaws: PusherGeometry, unit: float | None
+) -> tuple[FloatArray, list[ResultCode]]:
+    from singulation_core.push_world import compiled  # noqa: PLC0415  loading Numba takes half a second
+
+    meaning = {compiled.DONE: ResultCode.OK, compiled.BLOCKED: ResultCode.PATH_BLOCKED}
+    poses = np.full((len(pushes), len(arrangement), 3), np.nan)
+    codes = np.empty(len(pushes), dtype=np.int64)
+    footprints = [pusher_footprint(push, jaws) for push in pushes]
+    for footprint in dict.fromkeys(footprints):
+        chosen = [index for index, one in enumerate(footprints) if one is footprint]
+        world = compiled.CompiledWorld(arrangement, footprint, physics, unit_of(arrangement, unit))
+        starts, ends = (np.array([getattr(pushes[k], name) for k in chosen]) for name in ("start", "end"))
+        poses[chosen], codes[chosen] = world.roll_out(starts, ends)
+    return poses, [meaning.get(int(code), ResultCode.INTERNAL) for code in codes]
 
 
 def _perform(world: PushWorld, push: Push, pusher: PusherGeometry) -> None:

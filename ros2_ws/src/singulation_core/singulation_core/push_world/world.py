@@ -14,14 +14,12 @@ from singulation_core.push_world.approach import free_share, standing_on
 from singulation_core.push_world.displaced import displaced
 from singulation_core.push_world.footprint import Footprint
 from singulation_core.push_world.overlap import part_overlapping
-from singulation_core.push_world.physics import PushPhysics
+from singulation_core.push_world.physics import HEALED, TOUCHING, PushPhysics
 from singulation_core.push_world.plane_frame import PlaneFrame
 from singulation_core.push_world.space import add_blocks, block_poses, new_space, pusher_body
 from singulation_core.result_code import ResultCode
 
 _FAR_AWAY = np.array((1e5, 1e5, 0.0))  # inner units
-_HEALED = 0.8  # share of an overlap that a step of settling takes away
-_TOUCHING = 0.01  # overlap of pusher and block that still counts as touching [mean bounding radii]
 
 
 class PushWorld:
@@ -57,7 +55,7 @@ class PushWorld:
     ) -> None:
         self._initial = arrangement
         self.physics = physics or PushPhysics.quasi_static()
-        self.unit = _unit_of(arrangement, unit)
+        self.unit = unit_of(arrangement, unit)
         self._space = new_space(self.physics, len(arrangement))
         self._blocks = add_blocks(self._space, arrangement, self.unit, self.physics)
         self._pushers: dict[str, tuple[pymunk.Body, Footprint]] = {}
@@ -95,7 +93,7 @@ class PushWorld:
         """Ids of the blocks that the footprint at this pose overlaps (touching does not count)."""
         body, shapes = pusher_body(footprint, self.unit, self.physics)
         _set_pose(body, self._inner_pose(pose))
-        below = {block for shape in shapes for block in standing_on(self._space, shape, _TOUCHING)}
+        below = {block for shape in shapes for block in standing_on(self._space, shape, TOUCHING)}
         return [block.id for block in self._blocks if block.shape in below]
 
     def place(self, name: str, footprint: Footprint, pose: ArrayLike) -> None:
@@ -169,7 +167,7 @@ class PushWorld:
 
     def settle(self) -> None:
         """Heal overlaps that the last steps of a push left, faster than a moving pusher would allow."""
-        usual, self._space.collision_bias = self._space.collision_bias, 1.0 - _HEALED
+        usual, self._space.collision_bias = self._space.collision_bias, 1.0 - HEALED
         for _ in range(self.physics.settle_steps):
             self._space.step(1.0)
         self._space.collision_bias = usual
@@ -247,7 +245,12 @@ class PushWorld:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
 
 
-def _unit_of(arrangement: Arrangement, unit: float | None) -> float:
+def unit_of(arrangement: Arrangement, unit: float | None) -> float:
+    """The unit given, or the mean bounding radius [m].
+
+    Raises:
+        InvalidInputError: it is not a positive length.
+    """
     if unit is None:
         unit = float(arrangement.bounding_radii.mean()) if len(arrangement) else 1.0
     if not (0.0 < unit < math.inf):

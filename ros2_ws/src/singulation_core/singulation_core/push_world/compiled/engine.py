@@ -1,0 +1,137 @@
+"""From arrangements and pushes to arrays and back."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from singulation_core.arrangement import Arrangement
+from singulation_core.polygon import FloatArray
+from singulation_core.push_world.compiled.rollout import DONE, measure_overlaps, roll_out_many
+from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State
+from singulation_core.push_world.footprint import Footprint
+from singulation_core.push_world.physics import HEALED, TOUCHING, PushPhysics
+
+
+class CompiledWorld:
+    """The blocks of an arrangement, ready for any number of pushes by one footprint.
+
+    Args:
+        arrangement: where the blocks lie; overlaps there are left as they are.
+        footprint: of the pusher.
+        physics: quasi-static; its engine is not asked for.
+        unit: length that ``physics`` calls 1 [m].
+    """
+
+    def __init__(self, arrangement: Arrangement, footprint: Footprint, physics: PushPhysics, unit: float) -> None:
+        count = len(arrangement)
+        self._unit = unit
+        self._origins = arrangement.centroids / unit
+        self._shapes = _shapes(arrangement, footprint, physics.densities(count), unit)
+        self._state, self._contacts = _state(self._shapes), _contacts(16 * count + 16)
+        self._scratch = Scratch(np.zeros((2, count + 1), dtype=np.int64), np.zeros((2, 4)), np.zeros(2))
+        self._numbers = Numbers(
+            physics.friction,
+            physics.overlap_correction,
+            HEALED,
+            physics.slop,
+            _step(arrangement, footprint, physics, unit),
+            TOUCHING,
+            physics.iterations,
+            physics.settle_steps,
+        )
+        measure_overlaps(self._shapes, self._state, self._origins)
+
+    def roll_out(self, starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Outcomes of pushes. Calls from several threads need a world each; the interpreter is free meanwhile.
+
+        Args:
+            starts, ends: (m, 2) [m].
+
+        Returns:
+            (m, n, 3) x, y [m] of the centroids and turn [rad], NaN where not done; (m,) DONE, BLOCKED or DIVERGED.
+        """
+        ways = (ends - starts) / self._unit
+        heading, length = np.arctan2(ways[:, 1], ways[:, 0]), np.hypot(ways[:, 0], ways[:, 1])
+        pushes = np.column_stack((starts / self._unit, heading, length))
+        poses, codes = np.empty((len(pushes), len(self._origins), 3)), np.empty(len(pushes), dtype=np.int64)
+        roll_out_many(
+            self._shapes,
+            self._state,
+            self._contacts,
+            self._scratch,
+            self._numbers,
+            self._origins,
+            pushes,
+            poses,
+            codes,
+        )
+        poses[..., :2] *= self._unit
+        poses[codes != DONE] = np.nan
+        return poses, codes
+
+
+def _step(arrangement: Arrangement, footprint: Footprint, physics: PushPhysics, unit: float) -> float:
+    """The step of the physics, shorter where pusher or blocks are thin (see ``PushWorld``)."""
+    blocks = min((0.125 * item.area / item.bounding_radius for item in arrangement.objects), default=math.inf)
+    return max(min(physics.step, 0.5 * footprint.thickness / unit, blocks / unit), 0.1 * physics.step)
+
+
+def _shapes(arrangement: Arrangement, footprint: Footprint, densities: Sequence[float], unit: float) -> Shapes:
+    outlines = [(item.outline - item.centroid) / unit for item in arrangement.objects]
+    pusher = [one / unit for one in footprint.polygons]
+    sizes = [len(one) for one in outlines] + [sum(len(one) for one in pusher)]
+    firsts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
+    vertices = np.concatenate([*outlines, *pusher, np.empty((0, 2))])
+    normals = np.concatenate([_outward(one) for one in (*outlines, *pusher)] + [np.empty((0, 2))])
+    masses = np.array([item.area for item in arrangement.objects]) / unit**2 * np.array(densities)
+    inertia = masses * np.array([_squared_gyration(one) for one in outlines])
+    mobility = np.zeros((len(outlines) + 1, 2))
+    mobility[:-1, 0], mobility[:-1, 1] = 1.0 / masses, 1.0 / inertia
+    radii = np.append(arrangement.bounding_radii, footprint.reach) / unit
+    discs = np.array([(one.x, one.y, one.radius) for one in footprint.discs]).reshape(-1, 3) / unit
+    inner_radii = np.array([_inner_radius(one) for one in outlines] + [0.0])
+    return Shapes(firsts, vertices, normals, radii, inner_radii, mobility, discs)
+
+
+def _outward(outline: FloatArray) -> FloatArray:
+    edges = np.roll(outline, -1, axis=0) - outline
+    return np.column_stack((edges[:, 1], -edges[:, 0])) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+
+
+def _inner_radius(outline: FloatArray) -> float:
+    return float((outline * _outward(outline)).sum(axis=1).min())
+
+
+def _squared_gyration(outline: FloatArray) -> float:
+    """Moment of inertia about the origin over the mass of a polygon around its centroid."""
+    following = np.roll(outline, -1, axis=0)
+    weights = outline[:, 0] * following[:, 1] - outline[:, 1] * following[:, 0]
+    squares = (outline**2 + outline * following + following**2).sum(axis=1)
+    return float((weights * squares).sum() / (6.0 * weights.sum()))
+
+
+def _state(shapes: Shapes) -> State:
+    count, vertices = len(shapes.radii), len(shapes.vertices)
+    return State(
+        np.zeros((count, 3)),
+        np.zeros((vertices, 2)),
+        np.zeros((vertices, 2)),
+        np.zeros((count, 3)),
+        np.zeros((count, count)),
+        np.full((count, count), -1, dtype=np.int64),
+        np.zeros((count, count, 2, 3)),
+    )
+
+
+def _contacts(size: int) -> Contacts:
+    return Contacts(
+        np.zeros((size, 3), dtype=np.int64),
+        np.zeros((size, 2)),
+        np.zeros((size, 4)),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros((size, 2)),
+        np.zeros((size, 2)),
+        np.zeros(1, dtype=np.int64),
+    )

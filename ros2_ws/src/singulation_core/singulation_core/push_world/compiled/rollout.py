@@ -1,0 +1,140 @@
+"""Pushes from start to end."""
+
+import numpy as np
+
+from singulation_core.polygon import FloatArray
+from singulation_core.push_world.compiled.island import find_contacts, pusher_gap
+from singulation_core.push_world.compiled.jit import compiled
+from singulation_core.push_world.compiled.manifold import place, separation
+from singulation_core.push_world.compiled.solver import remember, solve, warm_start
+from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State
+
+DONE, BLOCKED, DIVERGED = 0, 1, 2
+
+
+@compiled
+def roll_out_many(
+    shapes: Shapes,
+    state: State,
+    contacts: Contacts,
+    scratch: Scratch,
+    numbers: Numbers,
+    origins: FloatArray,
+    pushes: FloatArray,
+    poses: FloatArray,
+    codes: IntArray,
+) -> None:
+    """All pushes of one scene, each from the first poses.
+
+    Args:
+        shapes, state, contacts, scratch, numbers: see their classes.
+        origins: (n, 2) first positions of the blocks.
+        pushes: (m, 4) start x, y, heading, length.
+        poses: (m, n, 3) written: x, y, turn.
+        codes: (m,) written: ``DONE``, ``BLOCKED`` or ``DIVERGED``.
+    """
+    for k in range(len(pushes)):
+        x, y, heading = pushes[k, 0], pushes[k, 1], pushes[k, 2]
+        _begin(shapes, state, origins, x, y, heading)
+        codes[k] = _roll_out(shapes, state, contacts, scratch, numbers, pushes[k, 3])
+        c, s = np.cos(heading), np.sin(heading)
+        for body in range(len(origins)):
+            px, py = state.poses[body, 0], state.poses[body, 1]
+            poses[k, body, 0], poses[k, body, 1] = x + c * px - s * py, y + s * px + c * py
+            poses[k, body, 2] = state.poses[body, 2] + heading
+
+
+@compiled
+def measure_overlaps(shapes: Shapes, state: State, origins: FloatArray) -> None:
+    """Note how deep blocks overlap at first: such pairs count as touching."""
+    _begin(shapes, state, origins, 0.0, 0.0, 0.0)
+    for one in range(len(origins)):
+        for other in range(one):
+            dx, dy = origins[one, 0] - origins[other, 0], origins[one, 1] - origins[other, 1]
+            if np.hypot(dx, dy) < shapes.radii[one] + shapes.radii[other]:
+                deep = max(0.0, -separation(shapes, state, one, other, 0.0)[0])
+                state.slack[one, other], state.slack[other, one] = deep, deep
+
+
+@compiled
+def _begin(shapes: Shapes, state: State, origins: FloatArray, x: float, y: float, heading: float) -> None:
+    """Everything at its first pose, in the frame of a push from (x, y) along ``heading``."""
+    n = len(origins)
+    c, s = np.cos(heading), np.sin(heading)
+    for body in range(n + 1):
+        dx, dy, angle = 0.0, 0.0, 0.0
+        if body < n:
+            dx, dy, angle = origins[body, 0] - x, origins[body, 1] - y, -heading
+        state.poses[body, 0], state.poses[body, 1], state.poses[body, 2] = c * dx + s * dy, c * dy - s * dx, angle
+        place(shapes, state, body)
+        for other in range(n + 1):
+            state.axes[body, other] = -1
+            for slot in range(2):
+                state.memory[body, other, slot, 0] = -1.0
+
+
+@compiled
+def _roll_out(
+    shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, numbers: Numbers, length: float
+) -> int:
+    """One push, after ``_begin``; the poses are left in ``state``."""
+    n = len(shapes.radii) - 1
+    if _nearest(shapes, state) < -numbers.touching:
+        return BLOCKED
+    left, found = length, 0
+    while left > 1e-12:
+        gap = _nearest(shapes, state) if found == 0 else 0.0
+        if gap > 1.5 * numbers.step:  # nothing to push yet: jump
+            jump = min(gap - 0.5 * numbers.step, left)
+            state.poses[n, 0] += jump
+            left -= jump
+            place(shapes, state, n)
+            continue
+        advance = min(numbers.step, left)
+        left -= advance
+        found = _step(shapes, state, contacts, scratch, numbers, advance)
+    for _ in range(numbers.settle_steps):
+        _step(shapes, state, contacts, scratch, numbers, 0.0)
+    for body in range(n):
+        if not (abs(state.poses[body, 0]) + abs(state.poses[body, 1]) + abs(state.poses[body, 2]) < 1e6):
+            return DIVERGED
+    return DONE
+
+
+@compiled
+def _nearest(shapes: Shapes, state: State) -> float:
+    """Gap between the pusher and the nearest block."""
+    gap = np.inf
+    for body in range(len(shapes.radii) - 1):
+        gap = min(gap, pusher_gap(shapes, state, body, gap))
+    return gap
+
+
+@compiled
+def _step(shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, numbers: Numbers, advance: float) -> int:
+    """Move the pusher by ``advance`` and the blocks with it; how many blocks are in contact."""
+    n = len(shapes.radii) - 1
+    found = find_contacts(shapes, state, contacts, scratch, 1.5 * advance + numbers.slop)
+    for k in range(found):
+        for axis in range(3):
+            state.motion[scratch.island[0, k], axis] = 0.0
+    state.motion[n, 0], state.motion[n, 1], state.motion[n, 2] = advance, 0.0, 0.0
+    if advance > 0.0:
+        warm_start(shapes, state, contacts)
+    solve(shapes, state, contacts, numbers, numbers.healing if advance > 0.0 else numbers.healing_at_rest)
+    remember(state, contacts)
+    for k in range(found):
+        _move(shapes, state, scratch.island[0, k])
+    state.poses[n, 0] += advance
+    place(shapes, state, n)
+    return found
+
+
+@compiled
+def _move(shapes: Shapes, state: State, body: int) -> None:
+    x, y, turn = state.motion[body, 0], state.motion[body, 1], state.motion[body, 2]
+    if x != 0.0 or y != 0.0 or turn != 0.0:
+        state.poses[body, 0] += x
+        state.poses[body, 1] += y
+        state.poses[body, 2] += turn
+        place(shapes, state, body)
