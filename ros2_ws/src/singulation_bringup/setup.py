@@ -36,6 +36,7 @@ setup(
             "closed_loop_benchmark = singulation_bringup.closed_loop.main:main",
             "singulate_node = singulation_bringup.singulate_node:main",
             "status = singulation_bringup.commands.status:main",
+            "calibrate = singulation_bringup.commands.calibrate:main",
             "bring_up = singulation_bringup.commands.bring_up:main",
             "dry_run = singulation_bringup.dry_run.dry_run:main",
             "driver_state_adapter = singulation_bringup.adapters.driver_state_adapter:main",

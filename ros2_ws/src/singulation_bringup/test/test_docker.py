@@ -71,7 +71,7 @@ def test_it_does_not_run_as_root_and_ends_in_the_entrypoint():
 def test_what_is_copied_exists():
     for name, body in instructions():
         if name == "COPY" and "--from" not in body:
-            source = [word for word in body.split() if not word.startswith("--")][0]
+            source = next(word for word in body.split() if not word.startswith("--"))
             assert (ROOT / source).exists()
 
 

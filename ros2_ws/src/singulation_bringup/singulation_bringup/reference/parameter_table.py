@@ -2,10 +2,10 @@
 
 import dataclasses
 from dataclasses import dataclass
-from decimal import Decimal
 from typing import Any
 
 from singulation_bringup.reference.nodes import NodeEntry
+from singulation_bringup.yaml_values import yaml_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,18 +32,6 @@ class ParameterRow:
 def rows(node: NodeEntry) -> list[ParameterRow]:
     """All parameters of a node, in the order of its settings class."""
     return [_row(item) for item in dataclasses.fields(node.settings)]
-
-
-def yaml_value(value: Any) -> str:
-    """A value as YAML that rcl reads with the same type; floats keep a dot and have no exponent."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, float):
-        plain = format(Decimal(repr(value)), "f")
-        return plain if "." in plain else f"{plain}.0"
-    if isinstance(value, tuple | list):
-        return f"[{', '.join(yaml_value(item) for item in value)}]"
-    return f'"{value}"' if isinstance(value, str) else str(value)
 
 
 def _row(item: Any) -> ParameterRow:

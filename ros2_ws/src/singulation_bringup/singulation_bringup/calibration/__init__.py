@@ -1,0 +1,1 @@
+"""Where table and camera stand, from clouds and from points touched with the robot."""
