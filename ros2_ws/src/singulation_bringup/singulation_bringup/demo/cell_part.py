@@ -16,7 +16,7 @@ from singulation_bringup.demo.film import Film
 from singulation_bringup.demo.observer import Observer
 from singulation_bringup.demo.options import DemoOptions
 from singulation_bringup.demo.processes import NodeProcesses
-from singulation_bringup.demo.summary import Summary, push_entry
+from singulation_bringup.demo.summary import Summary, object_entry, push_entry
 from singulation_bringup.demo.terminal import say
 from singulation_bringup.drawing import picture_of_progress, picture_of_push
 from singulation_core import CellGeometry, ResultCode, SingulationError, conversions, smallest_gap
@@ -125,6 +125,7 @@ class CellPart:
 
     def _singulate(self, observer: Observer) -> Any:
         options = self._options
+        self._summary.min_gap = options.min_gap
         goal = Singulate.Goal(
             max_pushes=options.max_pushes,
             min_gap=options.min_gap,
@@ -162,9 +163,9 @@ class CellPart:
             summary.smallest_gap.append(gaps[0])
         summary.singulation_distance.append(distances[1])
         summary.smallest_gap.append(gaps[1])
-        summary.pushes.append(
-            {**push_entry(push), "code": int(code), "code_name": code.name, "message": message.message}
-        )
+        outcome = {"code": int(code), "code_name": code.name, "message": message.message}
+        arrangements = {"before": object_entry(before), "after": object_entry(after)}
+        summary.pushes.append({**push_entry(push), **outcome, **arrangements})
         say(
             f"  push {number}: object {push.target_id}, {code.name}; s(A) {distances[0]:.3f} -> {distances[1]:.3f}, "
             f"smallest gap {1e3 * gaps[1]:.1f} mm"

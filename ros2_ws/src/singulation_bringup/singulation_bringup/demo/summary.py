@@ -16,7 +16,8 @@ from singulation_core import Arrangement, Push, ResultCode
 class Summary:
     """Filled while the demo runs, written whatever happens.
 
-    ``singulation_distance`` and ``smallest_gap`` [m] have one value before the first push and one after each.
+    ``singulation_distance`` and ``smallest_gap`` [m] have one value before the first push and one after each;
+    ``min_gap`` [m] is the gap that counts as separated.
     """
 
     code: ResultCode = ResultCode.OK
@@ -27,6 +28,7 @@ class Summary:
     pushes: list[dict[str, Any]] = field(default_factory=list)
     singulation_distance: list[float] = field(default_factory=list)
     smallest_gap: list[float] = field(default_factory=list)
+    min_gap: float | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     files: list[str] = field(default_factory=list)
 
@@ -62,6 +64,7 @@ class Summary:
             "pushes": self.pushes,
             "singulation_distance": self.singulation_distance,
             "smallest_gap": self.smallest_gap,
+            "min_gap": self.min_gap,
             "seconds": {stage: round(value, 3) for stage, value in self.seconds.items()},
             "files": self.files,
         }
