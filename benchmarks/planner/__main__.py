@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from singulation_core import SingulationError
-from singulation_planner.benchmark.report import comparison_report, run_report, timing_report
+from singulation_planner.benchmark.report import comparison_report, run_report, simulator_report, timing_report
 from singulation_planner.benchmark.run import BRUTE_FORCE, Plan, run
 from singulation_planner.benchmark.settings import find_setting
 from singulation_planner.policies import POLICIES
@@ -63,6 +63,11 @@ def comparison(options: argparse.Namespace, out: Path) -> str:
     return comparison_report(options.authors_file, out)
 
 
+def simulators(options: argparse.Namespace, out: Path) -> str:
+    """Presets of the push physics against each other."""
+    return simulator_report(options.simulator_scenes, out)
+
+
 def timing(options: argparse.Namespace, out: Path) -> str:
     """Planning times."""
     return timing_report(sorted(POLICIES), options.timing_scenes, out)
@@ -74,6 +79,7 @@ PARTS: dict[str, tuple[str, Callable[[argparse.Namespace, Path], str]]] = {
     "contact_modes_clutter": ("Table II in touching clutter", table_two("clutter")),
     "contact_modes_authors": ("Table II in the authors' setting", table_two("authors")),
     "comparison": ("The authors' simulator and ours, same pushes", comparison),
+    "simulators": ("Simulators", simulators),
     "timing": ("Time", timing),
 }
 
@@ -104,6 +110,7 @@ def _options() -> argparse.Namespace:
     add("--scenarios", type=int, default=1040, help="scenes for each table (default: %(default)s)")
     add("--brute-force-scenarios", type=int, default=520, help="of them also by Brute Force (default: %(default)s)")
     add("--timing-scenes", type=int, default=40, help="scenes for each number of objects (default: %(default)s)")
+    add("--simulator-scenes", type=int, default=48, help="60 random pushes on each (default: %(default)s)")
     add("--only", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART", help=", ".join(PARTS))
     add("--authors-file", type=Path, default=_AUTHORS_FILE, help="made with the authors' code (default: %(default)s)")
     add("--seed", type=int, default=0, help="of the first scene")

@@ -97,6 +97,14 @@ def test_an_interrupt_keeps_results_and_says_so(tmp_path, capsys, monkeypatch):
     assert "run again to go on" in capsys.readouterr().err
 
 
+def test_simulators_are_compared(tmp_path, capsys):
+    assert entry.main(["simulators", "--scenes", "2", "--out", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    rows = [line.split("|") for line in text.splitlines() if line.startswith(("| pymunk", "| compiled"))]
+    assert len(rows) == 3 * 7
+    assert all(float(row[5]) > 0.9 and abs(float(row[8])) < 1e-9 for row in rows)
+
+
 def test_timing_measures_every_policy_asked(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(entry.report, "_COUNTS", (3, 4))
     monkeypatch.setattr(entry.report, "_PUSH_COUNTS", (3,))

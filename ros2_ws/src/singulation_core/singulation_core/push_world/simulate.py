@@ -12,7 +12,7 @@ from singulation_core.errors import SingulationError
 from singulation_core.polygon import FloatArray
 from singulation_core.push import Push, PusherGeometry
 from singulation_core.push_world.displaced import displaced
-from singulation_core.push_world.footprint import pusher_footprint
+from singulation_core.push_world.footprint import Footprint, pusher_footprint
 from singulation_core.push_world.physics import PushPhysics
 from singulation_core.push_world.plane_frame import PlaneFrame
 from singulation_core.push_world.world import PushWorld, unit_of
@@ -124,20 +124,16 @@ def simulate_pushes(
 def _all_by_pymunk(
     arrangement: Arrangement, pushes: Sequence[Push], physics: PushPhysics, jaws: PusherGeometry, unit: float | None
 ) -> tuple[FloatArray, list[ResultCode]]:
-    world, present = PushWorld(arrangement, physics, unit), None
     poses = np.full((len(pushes), len(arrangement), 3), np.nan)
-    codes = []
-    for index, push in enumerate(pushes):
-        footprint = pusher_footprint(push, jaws)
-        if present is not None and present is not footprint:  # other jaws in an old space: another order of contacts
-            world = PushWorld(arrangement, physics, unit)
-        present = footprint
-        try:
-            _perform(world, push, jaws)
-            poses[index] = world.poses()
-            codes.append(ResultCode.OK)
-        except SingulationError as error:
-            codes.append(error.code)
+    codes = [ResultCode.OK] * len(pushes)
+    for _, chosen in _by_footprint(pushes, jaws):
+        world = PushWorld(arrangement, physics, unit)  # other jaws in an old space: another order of contacts
+        for index in chosen:
+            try:
+                _perform(world, pushes[index], jaws)
+                poses[index] = world.poses()
+            except SingulationError as error:
+                codes[index] = error.code
     return poses, codes
 
 
@@ -149,13 +145,20 @@ def _all_compiled(
     meaning = {compiled.DONE: ResultCode.OK, compiled.BLOCKED: ResultCode.PATH_BLOCKED}
     poses = np.full((len(pushes), len(arrangement), 3), np.nan)
     codes = np.empty(len(pushes), dtype=np.int64)
-    footprints = [pusher_footprint(push, jaws) for push in pushes]
-    for footprint in dict.fromkeys(footprints):
-        chosen = [index for index, one in enumerate(footprints) if one is footprint]
+    for footprint, chosen in _by_footprint(pushes, jaws):
         world = compiled.CompiledWorld(arrangement, footprint, physics, unit_of(arrangement, unit))
         starts, ends = (np.array([getattr(pushes[k], name) for k in chosen]) for name in ("start", "end"))
         poses[chosen], codes[chosen] = world.roll_out(starts, ends)
     return poses, [meaning.get(int(code), ResultCode.INTERNAL) for code in codes]
+
+
+def _by_footprint(pushes: Sequence[Push], jaws: PusherGeometry) -> list[tuple[Footprint, list[int]]]:
+    """Indices of the pushes with the same jaws."""
+    groups: dict[int, tuple[Footprint, list[int]]] = {}
+    for index, push in enumerate(pushes):
+        footprint = pusher_footprint(push, jaws)
+        groups.setdefault(id(footprint), (footprint, []))[1].append(index)
+    return list(groups.values())
 
 
 def _perform(world: PushWorld, push: Push, pusher: PusherGeometry) -> None:

@@ -20,6 +20,7 @@ _EXAMPLES = """examples:
   benchmark run --dask tcp://scheduler:8786 --out results       on a cluster; stop and run again to go on
   benchmark tables results                                      tables and figure again from what is there
   benchmark compare authors_simulator.jsonl.gz --out compare    our physics against the authors' simulator
+  benchmark simulators --out simulators                         presets of the push physics against each other
   benchmark timing --out timing                                 planning time against the number of objects
 """
 
@@ -51,6 +52,10 @@ def _parser() -> argparse.ArgumentParser:
     compare.add_argument("file", type=Path, help="JSON lines, plain or .gz")
     compare.add_argument("--out", type=Path, required=True, help="folder for the table")
     compare.set_defaults(command=lambda options: print(report.comparison_report(options.file, options.out)))
+    simulators = commands.add_parser("simulators", help="time and error of a simulated push, for every preset")
+    simulators.add_argument("--scenes", type=int, default=32, help="60 random pushes on each (default: %(default)s)")
+    simulators.add_argument("--out", type=Path, required=True, help="folder for the table")
+    simulators.set_defaults(command=lambda options: print(report.simulator_report(options.scenes, options.out)))
     timing = commands.add_parser("timing", help="planning time against the number of objects, on one core")
     _add_policies(timing)
     timing.add_argument("--scenes", type=int, default=40, help="for each number of objects (default: %(default)s)")

@@ -4,10 +4,12 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from singulation_core import ContactMode
 from singulation_planner.benchmark.compare import compare, comparison_table
 from singulation_planner.benchmark.figure import figure_six
 from singulation_planner.benchmark.record import Record
 from singulation_planner.benchmark.settings import SETTINGS
+from singulation_planner.benchmark.simulators import simulator_table
 from singulation_planner.benchmark.store import export
 from singulation_planner.benchmark.tables import authors_table, table_one, table_two, write
 from singulation_planner.benchmark.timing import measure, measure_pushes, timing_table
@@ -44,6 +46,15 @@ def comparison_report(file: Path, out: Path) -> str:
     rows.to_csv(out / "compare.csv", index=False)
     text = comparison_table(rows)
     write(out, "compare", text)
+    return text
+
+
+def simulator_report(scenes: int, out: Path) -> str:
+    """Write ``simulators.md``; returns the tables."""
+    out.mkdir(parents=True, exist_ok=True)
+    text = "Errors in bounding radii, of the worst block of a push; times are processor time of one core.\n\n"
+    text += "\n".join(simulator_table(SETTINGS["clutter"], scenes, mode) for mode in ContactMode)
+    write(out, "simulators", text)
     return text
 
 
