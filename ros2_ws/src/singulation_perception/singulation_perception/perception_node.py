@@ -31,7 +31,7 @@ from singulation_perception.cloud_messages import cloud_message, points_from_msg
 from singulation_perception.encoding import encode_coloured
 from singulation_perception.frame_ledger import FrameLedger
 from singulation_perception.latest_worker import LatestWorker
-from singulation_perception.perception_diagnostics import report_clouds
+from singulation_perception.perception_diagnostics import first_words, report_clouds, report_table
 from singulation_perception.perception_settings import PerceptionSettings
 from singulation_perception.stamp_order import StampOrder
 
@@ -47,6 +47,7 @@ class _Stream:
     stamps: StampOrder
     camera: tuple[Any, ...] = ()
     table: TablePlane | None = None
+    began: bool = False
 
 
 class PerceptionNode(ManagedNode[PerceptionSettings]):
@@ -110,14 +111,15 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
             result = self._segment(message, settings)
             segmented = time.perf_counter()
             self._publish(message, result, settings)
-            stages = dict(result.milliseconds)
-            stages["segment"] = 1e3 * (segmented - started)
-            stages["publish"] = 1e3 * (time.perf_counter() - segmented)
-            self.ledger.published(self._age(message), stages)
+            published = time.perf_counter()
         except SingulationError as error:
             self._reject(error.code, error.message)
         except Exception as error:
             self._reject(ResultCode.INTERNAL, "".join(traceback.format_exception(error)))
+        else:
+            whole = {"segment": 1e3 * (segmented - started), "publish": 1e3 * (published - segmented)}
+            self.ledger.published(self._age(message), {**result.milliseconds, **whole})
+            self._tell(message, result, settings)
 
     def _segment(self, message: PointCloud2, settings: PerceptionSettings) -> Segmentation:
         stream, stamp = self._stream, message.header.stamp
@@ -150,6 +152,13 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
             layout, data = encode_coloured(points_from_msg(message), result.labels)
             header = Header(stamp=message.header.stamp, frame_id=message.header.frame_id)
             self._labels.publish(cloud_message(data, layout, header))
+
+    @guarded
+    def _tell(self, message: PointCloud2, result: Segmentation, settings: PerceptionSettings) -> None:
+        report_table(self.diagnostics, result)
+        if not self._stream.began:
+            self._stream.began = True
+            self.get_logger().info(first_words(message, result, settings.table_frame))
 
     def _reject(self, code: ResultCode, text: str) -> None:
         self.ledger.rejected(code, text)

@@ -62,10 +62,12 @@ class Rhythm:
 
     Args:
         rate: 2.0 plays twice as fast.
+        stepping: whether somebody else decides when the next cloud is due; time then stands still between clouds.
     """
 
-    def __init__(self, rate: float) -> None:
+    def __init__(self, rate: float, stepping: bool = False) -> None:
         self._rate = rate
+        self._stepping = stepping
         self._anchor: tuple[float, int] | None = None  # (monotonic [s], recorded [ns]) of the first cloud
 
     def restart(self) -> None:
@@ -84,4 +86,6 @@ class Rhythm:
         if self._anchor is None:
             return None
         start, first = self._anchor
+        if self._stepping:
+            return first
         return first + round((now - start) * self._rate * _SECOND)

@@ -49,7 +49,7 @@ class ReplayNode(Node):
         super().__init__("replay_clouds", **node_options)
         self._options = options
         self._stop = stop
-        self._rhythm = Rhythm(options.rate)
+        self._rhythm = Rhythm(options.rate, options.step)
         self._points = self.create_publisher(PointCloud2, "points", _OFFERED)
         self._published = 0
         self._steps = threading.Semaphore(0)

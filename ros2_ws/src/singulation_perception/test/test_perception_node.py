@@ -272,6 +272,32 @@ def test_markers_and_labels_for_those_who_listen(bench):
     assert len(np.unique(colours)) == 4
 
 
+def test_the_first_cloud_is_described_in_the_log_and_the_table_in_the_diagnostics(bench, monkeypatch):
+    said, lines = Mailbox(bench.camera, DiagnosticArray, "/diagnostics"), []
+    monkeypatch.setattr(bench.node.get_logger(), "info", lines.append)
+    bench.see(message(scene(offset=0.004), bench.next_stamp()))
+    bench.good()
+    wait_until(lambda: len(lines) > 0)
+    assert len(lines) == 1
+    assert "150 x 150 points in frame 'camera'" in lines[0]
+    assert "3 objects; object 0 at (" in lines[0]
+
+    def tables():
+        return [one for a in said.messages for one in a.status if one.name == "perception_node: table"]
+
+    wait_until(tables)
+    values = {pair.key: pair.value for pair in tables()[-1].values}
+    assert abs(float(values["offset [mm]"])) < 0.5
+    assert values["objects"] == "3"
+
+
+def test_what_fails_after_publishing_is_not_a_second_outcome(bench, monkeypatch):
+    monkeypatch.setattr(perception_node, "report_table", lambda *_: 1 / 0)
+    bench.good()
+    assert bench.ledger.pending == 0
+    assert not bench.ledger.rejected
+
+
 def test_diagnostics_tell_what_became_of_the_clouds(bench):
     said = Mailbox(bench.camera, DiagnosticArray, "/diagnostics")
 

@@ -25,6 +25,15 @@ def test_rhythm_keeps_the_distances_of_the_recording():
     assert rhythm.due(100 * SECOND, 50.0) == 50.0
 
 
+def test_step_by_step_the_time_stands_still_between_clouds():
+    rhythm = Rhythm(1.0, stepping=True)
+    rhythm.due(100 * SECOND, 5.0)
+    assert rhythm.recorded_at(60.0) == 100 * SECOND
+    rhythm.restart()
+    rhythm.due(101 * SECOND, 61.0)
+    assert rhythm.recorded_at(61.0) == 101 * SECOND
+
+
 def test_files_are_played_in_the_given_order_and_distance(tmp_path):
     paths = [write_ply(tmp_path / f"{name}.ply") for name in "ba"]
     recording = find_recording(paths, "", 0.5)
