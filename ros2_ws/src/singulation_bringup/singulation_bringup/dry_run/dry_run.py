@@ -34,7 +34,12 @@ class DryRun(ManagedNode[ExecutorSettings]):
     def __init__(self, **options: Any) -> None:
         super().__init__("dry_run", ExecutorSettings, **options)
         self._positions: Any = None
-        self._planned = 0
+        self._planned = self._arrangements = 0
+
+    @property
+    def has_seen_all(self) -> bool:
+        """Whether blocks and robot are known, so that a motion is what the executor would do."""
+        return self._positions is not None and self._arrangements > 0
 
     def configure(self) -> None:
         """Announce the markers."""
@@ -61,6 +66,7 @@ class DryRun(ManagedNode[ExecutorSettings]):
     def _take_objects(self, message: Any) -> None:
         stamp = message.header.stamp
         self._gate.add((stamp.sec, stamp.nanosec), arrangement_from_msg(message))
+        self._arrangements += 1
 
     @guarded
     def _take_push(self, message: Any) -> None:
