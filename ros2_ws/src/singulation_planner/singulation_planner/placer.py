@@ -16,10 +16,12 @@ from singulation_planner.placement import Placement, clearance_of
 from singulation_planner.scene import Scene
 from singulation_planner.workspace import Walls
 
+NOT_SIMULATED = 6  # beside the codes of the kernel
 _REASONS = {
     MISSES: "pass beside the object",
     BLOCKED: "start where another object is in the way",
     OUTSIDE: "start or end outside the workspace",
+    NOT_SIMULATED: "could not be simulated",
     OVER_EDGE: "would carry an object over the edge of the workspace",
 }
 _MODES = {

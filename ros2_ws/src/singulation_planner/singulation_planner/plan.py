@@ -13,6 +13,7 @@ from singulation_core import (
     PusherGeometry,
     ResultCode,
     SingulationError,
+    smallest_gap,
 )
 from singulation_core import contact_mode as as_contact_mode
 from singulation_core.push_world.physics import PushPhysics
@@ -21,7 +22,7 @@ from singulation_planner.placement import Placement, clearance_of
 from singulation_planner.placer import make_placer
 from singulation_planner.policies import find_policy
 from singulation_planner.policy import Policy, Task
-from singulation_planner.scene import Scene
+from singulation_planner.scene import OVERLAP_TOLERANCE, Scene
 from singulation_planner.workspace import workspace_walls
 
 # Travel after contact in mean bounding radii. The paper does not give it; its tables fit 0.7 to 1.
@@ -41,6 +42,8 @@ def plan_push(
     push_distance_factor: float = PUSH_DISTANCE_FACTOR,
     best_contact_mode: bool = False,
     physics: PushPhysics | None = None,
+    min_gap: float | None = None,
+    overlap_tolerance: float = OVERLAP_TOLERANCE,
     **options: Any,
 ) -> Push:
     """The push that a policy plans for an arrangement.
@@ -62,6 +65,8 @@ def plan_push(
         best_contact_mode: plan for each of the three contact modes, simulate their pushes, return the best;
             ``contact_mode`` is then only the first one tried, which wins ties.
         physics: of policies and choices that simulate; None: ``PushPhysics.quasi_static()``.
+        min_gap: nothing is to do if all objects are at least this far apart [m]; None: they may always be pushed.
+        overlap_tolerance: depth of an overlap that is taken for noise, in units of the smaller bounding radius.
         **options: of the policy, see its module.
 
     Returns:
@@ -74,7 +79,8 @@ def plan_push(
     """
     chosen, mode = find_policy(policy), as_contact_mode(contact_mode)
     settings = chosen.read_options(options)
-    scene = Scene.of(arrangement)
+    scene = Scene.of(arrangement, overlap_tolerance)
+    _refuse_separated(arrangement, min_gap)
     travel = _travel(push_distance, push_distance_factor * scene.scale, clearance_of(placement, pusher))
     walls = workspace_walls(workspace, scene)
 
@@ -83,6 +89,16 @@ def plan_push(
         return _first_push(chosen, Task(scene, placer, seed, physics), settings)
 
     return best_of_modes(plan, mode, scene, pusher, physics) if best_contact_mode else plan(mode)
+
+
+def _refuse_separated(arrangement: Arrangement, min_gap: float | None) -> None:
+    if min_gap is None:
+        return
+    gap = smallest_gap(arrangement)
+    if gap >= min_gap:
+        raise SingulationError(
+            ResultCode.NOTHING_TO_DO, f"all objects are at least {gap:.4g} m apart, asked for were {min_gap:.4g} m"
+        )
 
 
 def _travel(push_distance: float | None, after_contact: float, clearance: float) -> float:

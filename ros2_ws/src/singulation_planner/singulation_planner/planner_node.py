@@ -16,7 +16,7 @@ from singulation_msgs import msg as messages
 from singulation_msgs.srv import PlanPush
 from visualization_msgs.msg import MarkerArray
 
-from singulation_core import ContactMode, InvalidInputError, Push, ResultCode, SingulationError
+from singulation_core import Arrangement, ContactMode, InvalidInputError, Push, ResultCode, SingulationError
 from singulation_core.conversions import arrangement_from_msg, contact_mode_from_msg, push_to_msg, seconds_of
 from singulation_node.guard import guarded, guarded_service
 from singulation_node.main import run_node
@@ -87,11 +87,14 @@ class PlannerNode(ManagedNode[PlannerSettings]):
             self._count(error.code, error.message, policy)
             raise
         finally:
-            if arrangement is not None and self._markers.get_subscription_count() > 0:
-                jaws = settings.arguments["pusher"]
-                self._markers.publish(planner_markers(arrangement, push, jaws, message.header))
+            self._show(arrangement, push, settings, message.header)
         self._count(ResultCode.OK, f"object {push.target_id} of {len(arrangement)}", policy, seconds)
         return push, seconds
+
+    @guarded
+    def _show(self, arrangement: Arrangement | None, push: Push | None, settings: PlannerSettings, header: Any) -> None:
+        if arrangement is not None and self._markers.get_subscription_count() > 0:
+            self._markers.publish(planner_markers(arrangement, push, settings.arguments["pusher"], header))
 
     def _check_header(self, header: Any, settings: PlannerSettings) -> None:
         if header.frame_id != settings.frame:

@@ -11,6 +11,7 @@ from singulation_node.parameters import parameter
 from singulation_planner.placement import Placement
 from singulation_planner.plan import PUSH_DISTANCE_FACTOR
 from singulation_planner.policies import POLICIES
+from singulation_planner.scene import OVERLAP_TOLERANCE
 
 _CELL, _JAWS, _PLACEMENT = CellGeometry(), PusherGeometry(), Placement()
 
@@ -48,6 +49,11 @@ class PlannerSettings:
     )
     physics: str = parameter(
         "quasi_static", "physics of policies that simulate", choices=("quasi_static", "fine", "fast")
+    )
+    leave_separated: bool = parameter(False, "push nothing where all gaps are at least min_gap")
+    min_gap: float = parameter(0.01, "gap between outlines that counts as separated [m]", low=0.0, high=1.0)
+    overlap_tolerance: float = parameter(
+        OVERLAP_TOLERANCE, "deepest overlap of outlines taken for noise [smaller bounding radii]", low=0.0, high=1.0
     )
     frame: str = parameter("table", "frame that arrangements must be in")
     max_age: float = parameter(5.0, "oldest acceptable arrangement [s]", low=0.01, high=3600.0)
@@ -98,5 +104,7 @@ class PlannerSettings:
             "workspace": self.workspace_polygon(),
             "seed": self.seed,
             "placement": Placement(clearance=self.clearance, widest_jaw=self.widest_jaw),
+            "min_gap": self.min_gap if self.leave_separated else None,
+            "overlap_tolerance": self.overlap_tolerance,
             "physics": PushPhysics.named(self.physics),
         }

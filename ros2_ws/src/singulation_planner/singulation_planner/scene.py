@@ -40,8 +40,12 @@ class Scene:
     scale: float
 
     @classmethod
-    def of(cls, arrangement: Arrangement) -> Self:
+    def of(cls, arrangement: Arrangement, overlap_tolerance: float = OVERLAP_TOLERANCE) -> Self:
         """Scene of at least two objects that do not overlap.
+
+        Args:
+            arrangement: the objects.
+            overlap_tolerance: depth of an overlap that is taken for noise, in units of the smaller bounding radius.
 
         Raises:
             SingulationError: ``NOTHING_TO_DO`` for fewer than two objects, ``OVERLAPPING_OBJECTS``.
@@ -59,7 +63,7 @@ class Scene:
         radii = arrangement.bounding_radii[index]
         scale = float(radii.sum()) / n
         scene = cls(arrangement, order, arrangement.centroids[index], radii, np.concatenate(outlines), firsts, scale)
-        scene._refuse_overlaps()
+        scene._refuse_overlaps(overlap_tolerance)
         return scene
 
     def __len__(self) -> int:
@@ -74,13 +78,13 @@ class Scene:
         """Id of the object at this place of the canonical order."""
         return self.arrangement.objects[self.order[index]].id
 
-    def _refuse_overlaps(self) -> None:
-        one, other, depth = deepest_overlap(self.centroids, self.radii, self.vertices, self.firsts, OVERLAP_TOLERANCE)
+    def _refuse_overlaps(self, tolerance: float) -> None:
+        one, other, depth = deepest_overlap(self.centroids, self.radii, self.vertices, self.firsts, tolerance)
         if one >= 0:
             raise SingulationError(
                 ResultCode.OVERLAPPING_OBJECTS,
                 f"objects {self.object_id(one)} and {self.object_id(other)} overlap by {depth:.4g} m; at most "
-                f"{OVERLAP_TOLERANCE:.0%} of the smaller bounding radius is taken for noise",
+                f"{tolerance:.0%} of the smaller bounding radius is taken for noise",
             )
 
 

@@ -8,6 +8,7 @@ import pytest
 from singulation_core import ContactMode, ResultCode, SingulationError, singulation_distance
 from singulation_core.push_world import PushPhysics, simulate_push
 from singulation_planner import plan_push
+from singulation_planner.policies import brute_force
 from singulation_planner.policies.brute_force import Options, _chords, _parallels
 from singulation_planner.testing import clutter, squares
 
@@ -72,6 +73,18 @@ def test_physics_is_a_choice():
     slippery = plan_push(arrangement, "brute_force", physics=PushPhysics(friction=0.01), **COARSE)
     rough = plan_push(arrangement, "brute_force", physics=PushPhysics(friction=1.0), **COARSE)
     assert slippery.expected_gain != rough.expected_gain
+
+
+def test_failed_simulations_are_counted_and_never_returned(monkeypatch):
+    arrangement = clutter(3, 3)
+    monkeypatch.setattr(
+        brute_force, "simulated_changes", lambda task, candidates, chosen, starts: np.full(len(chosen), np.nan)
+    )
+    with pytest.raises(SingulationError, match="could not be simulated") as caught:
+        plan_push(arrangement, "brute_force", **COARSE)
+    assert caught.value.code is ResultCode.NO_PUSH
+    monkeypatch.undo()
+    assert math.isfinite(plan_push(arrangement, "brute_force", **COARSE).expected_gain)
 
 
 def test_the_best_mode_is_the_best_of_the_three():

@@ -95,6 +95,20 @@ def test_a_little_overlap_is_noise():
     assert "0.003 m" in text
 
 
+def test_how_much_is_noise_can_be_said():
+    pair = squares([(0.0, 0.0), (0.0170, 0.0)])
+    assert plan_push(pair, overlap_tolerance=0.25).target_id in (0, 1)
+    assert code_of(squares([(0.0, 0.0), (0.0195, 0.0)]), overlap_tolerance=0.01)[0] is ResultCode.OVERLAPPING_OBJECTS
+
+
+def test_separated_objects_are_nothing_to_do_if_told_so():
+    pair = squares([(0.0, 0.0), (0.05, 0.0)])
+    assert plan_push(pair, min_gap=0.031).target_id in (0, 1)
+    code, text = code_of(pair, min_gap=0.029)
+    assert code is ResultCode.NOTHING_TO_DO
+    assert "0.03 m apart" in text
+
+
 @pytest.mark.parametrize(
     ("outline", "word"),
     [
@@ -233,6 +247,20 @@ def test_the_width_of_the_contact_is_the_jaws():
 
 def test_the_geometric_policies_promise_no_gain():
     assert all(math.isnan(plan_push(GOOD, policy).expected_gain) for policy in GEOMETRIC)
+
+
+def test_another_process_plans_the_same_to_the_last_bit():
+    script = (
+        "from singulation_planner import plan_push; from singulation_planner.testing import clutter\n"
+        "for name in %r:\n"
+        "    push = plan_push(clutter(7, 3), name, seed=5)\n"
+        "    print(push.start.tobytes().hex(), push.target_id)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script % GEOMETRIC], capture_output=True, text=True, check=True, timeout=60.0
+    )
+    here = [plan_push(clutter(7, 3), name, seed=5) for name in GEOMETRIC]
+    assert done.stdout.splitlines() == [f"{push.start.tobytes().hex()} {push.target_id}" for push in here]
 
 
 def test_importing_the_package_compiles_nothing():

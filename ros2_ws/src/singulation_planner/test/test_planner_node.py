@@ -185,6 +185,25 @@ def test_options_and_workspace_corners_are_used(node):
     np.testing.assert_allclose(push_from_msg(answer.push).end, planned.end, atol=1e-6)
 
 
+def test_separated_objects_are_left_alone_when_told_so(node):
+    pair = squares([(0.0, 0.0), (0.05, 0.0)])
+    assert ask(node, fresh(node, pair)).code == ResultCode.OK
+    node.set_parameters([Parameter("leave_separated", value=True)])
+    assert ask(node, fresh(node, pair)).code == ResultCode.NOTHING_TO_DO
+    node.set_parameters([Parameter("min_gap", value=0.04)])
+    assert ask(node, fresh(node, pair)).code == ResultCode.OK
+
+
+def test_markers_that_fail_do_not_cost_the_push(node, monkeypatch):
+    def broken(*_):
+        raise RuntimeError("no paint")
+
+    monkeypatch.setattr("singulation_planner.planner_node.planner_markers", broken)
+    Mailbox(node, MarkerArray, "planner/markers")
+    wait_until(lambda: node._markers.get_subscription_count() == 1, what="subscription")
+    assert ask(node, fresh(node, clutter(4, 3))).code == ResultCode.OK
+
+
 def test_a_burst_is_answered_or_superseded_never_queued(node):
     objects = sender(node)
     for _ in range(50):

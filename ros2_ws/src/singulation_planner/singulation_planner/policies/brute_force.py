@@ -10,6 +10,7 @@ from singulation_core import InvalidInputError
 from singulation_core.polygon import FloatArray
 from singulation_planner.candidates import Candidates
 from singulation_planner.directions import away
+from singulation_planner.placer import NOT_SIMULATED
 from singulation_planner.policy import Task, policy
 from singulation_planner.rollouts import relative_gain, simulated_changes
 
@@ -50,6 +51,7 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
     changes = simulated_changes(task, candidates, chosen, starts)
     order = np.argsort(-np.nan_to_num(changes, nan=-np.inf), kind="stable")
     order = order[np.isfinite(changes[order])]
+    task.placer.rejected[NOT_SIMULATED] += len(chosen) - len(order)
     best = chosen[order]
     ordered = scene.in_order()
     gains = np.array([relative_gain(change, ordered) for change in changes[order].tolist()])
