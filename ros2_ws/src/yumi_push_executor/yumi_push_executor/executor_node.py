@@ -16,6 +16,7 @@ from typing import Any
 
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import JointState
 from singulation_msgs.action import ExecutePush
 from singulation_msgs.msg import Arrangement, DriverState, PushOutcome, PushTrajectory
@@ -36,7 +37,7 @@ from yumi_push_executor.outcome_messages import feedback_of, outcome_of, result_
 from yumi_push_executor.push_execution import Outside, PushExecution
 from yumi_push_executor.push_gate import PushGate, Stamp
 from yumi_push_executor.push_planner import PushPlanner
-from yumi_push_executor.robot_view import RobotView
+from yumi_push_executor.robot_view import TICK, RobotView
 from yumi_push_executor.supervision import Instant, Step, hold_arm
 from yumi_push_executor.wire_messages import driver_status_from_msg
 
@@ -65,9 +66,12 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         outside = Outside(self._controllers.send, self.instant, self.ros_time, self._controllers.require)
         self._execution = PushExecution(self._view, self._gate, planner, outside)
         self._last_outcome = self.create_publisher(PushOutcome, "last_outcome", LATCHED)
-        states, rest = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        # Each in a group of its own: on a busy machine the frequent joint states would else keep the others waiting.
+        states, driver, rest = (MutuallyExclusiveCallbackGroup() for _ in range(3))
         self.create_subscription(JointState, "joint_states", self._take_states, STATE, callback_group=states)
-        self.create_subscription(DriverState, "driver_state", self._take_driver, STATE, callback_group=states)
+        self.create_subscription(DriverState, "driver_state", self._take_driver, STATE, callback_group=driver)
+        # In the group of the states: while a tick comes through, a state would have, too.
+        self.create_timer(TICK, self._view.tick, callback_group=states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.create_subscription(Arrangement, "objects", self._take_objects, STATE, callback_group=rest)
         self.create_service(Trigger, "halt", self._halt, callback_group=ReentrantCallbackGroup())
         self.create_service(Trigger, "clear_view", self._clear_view, callback_group=ReentrantCallbackGroup())
@@ -103,7 +107,7 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         The system's clock may step; neither the steady clock nor a simulation's does.
         """
         wall = time.monotonic()
-        return Instant(self.ros_time() if self._simulated else wall, wall)
+        return Instant(self.ros_time() if self._simulated else wall, wall, self._view.listened)
 
     def ros_time(self) -> float:
         """The clock of the stamps [s]."""

@@ -1,6 +1,7 @@
 """What is known of the robot at the moment, shared between the threads of a node."""
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
 
@@ -8,6 +9,7 @@ from singulation_core import InvalidInputError
 from yumi_push_executor.supervision import DriverStatus, Instant, JointRange, Sample, StateWatch, SupervisionLimits
 from yumi_push_executor.wire import JointNames, StateReader
 
+TICK = 0.02  # s
 _QUEUE = 500  # samples; two seconds at 250 Hz, more than any gap the supervision allows
 
 
@@ -32,6 +34,8 @@ class RobotView:
         self.watch = StateWatch(limits, ranges)
         self.driver: DriverStatus | None = None
         self.messages = 0
+        self._ticked = time.monotonic()
+        self._listened = 0.0
         self._reader = StateReader(names, limits.state_age)
         self._clock = clock
         self._fresh: deque[Sample] = deque(maxlen=_QUEUE)
@@ -49,13 +53,25 @@ class RobotView:
             now = self._clock()
             self.messages += 1
             try:
-                sample = self._reader.read(names, positions, velocities, taken=now.time - delay, arrived=now.wall)
+                sample = self._reader.read(names, positions, velocities, taken=now.time - delay, arrived=now.heard)
             except InvalidInputError:
                 self.watch.refused += 1
                 raise
             if sample is not None and self.watch.add(sample, now):
                 self._fresh.append(sample)
         self._arrival.set()
+
+    @property
+    def listened(self) -> float:
+        """For how long joint states could have been heard so far [s]; see ``Instant``."""
+        return self._listened
+
+    def tick(self) -> None:
+        """Whoever hears joint states hears this, too, every ``TICK``; what is missed of it was not listened to."""
+        with self.lock:
+            now = time.monotonic()
+            self._listened += min(now - self._ticked, 1.5 * TICK)
+            self._ticked = now
 
     def add_driver(self, status: DriverStatus) -> None:
         """Take the driver's state."""

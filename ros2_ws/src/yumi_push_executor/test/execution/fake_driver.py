@@ -7,6 +7,7 @@ import threading
 
 import numpy as np
 from fake_robot import ARMS, CYCLE, HOME, FakeArm
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -16,7 +17,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from singulation_core.conversions import stamp_of
 from singulation_node.qos import COMMAND, STATE
-from yumi_push_executor.supervision import Trajectory
+from yumi_push_executor.supervision import Phase, Trajectory
 
 PERIOD = 0.02  # s of its own time between joint states
 SPEED = 5.0
@@ -40,7 +41,8 @@ class FakeDriver(Node):
             self._listen(arm)
         self._ticks = self.create_publisher(Clock, "/clock", STATE)
         self.time = 1000.0
-        self.create_timer(PERIOD / SPEED, self._tick)
+        # Not in the group of the subscriptions: a late machine would then let time pass and no order come through.
+        self.create_timer(PERIOD / SPEED, self._tick, callback_group=MutuallyExclusiveCallbackGroup())
 
     def heal(self):
         """Nothing is wrong, both arms at home."""
@@ -50,6 +52,8 @@ class FakeDriver(Node):
             mode=DriverState.MOTORS_ON, motion_enabled=True, left_gripper_calibrated=True, right_gripper_calibrated=True
         )
         self.change = lambda message: message  # of joint states; None drops them
+        self.orders = 0
+        self.plans = []  # (number of the order, seconds after it, what then happens)
 
     def _listen(self, arm):
         self.create_subscription(
@@ -73,6 +77,10 @@ class FakeDriver(Node):
         velocities = [[point.velocities[place] for place in places] for point in message.points]
         with self.lock:
             self.trajectories.append((self.time, arm, message))
+            self.orders += 1
+            self.plans = [
+                (0, self.time + after, do) if at == self.orders else (at, after, do) for at, after, do in self.plans
+            ]
             if self.state.motion_enabled:
                 self.arms[arm].order(Trajectory(times, positions, velocities), self.time)
 
@@ -80,6 +88,7 @@ class FakeDriver(Node):
         with self.lock:
             for _ in range(round(PERIOD / CYCLE)):
                 self.time += CYCLE
+                self._let_happen()
                 for arm in ARMS:
                     self.arms[arm].cycle(self.time, self.state.motion_enabled)
                     step = 0.05 * CYCLE
@@ -92,6 +101,17 @@ class FakeDriver(Node):
             self._states.publish(message)
         self.state.header.stamp = stamp
         self._driver.publish(self.state)
+
+    def during(self, phase, after, do):
+        """Let something happen a while [s] after the order of a phase has come; they are ordered in turn."""
+        with self.lock:
+            self.plans.append((self.orders + phase - Phase.GRIPPER, after, do))
+
+    def _let_happen(self):
+        due = [do for at, when, do in self.plans if at == 0 and when <= self.time]
+        self.plans = [plan for plan in self.plans if plan[0] != 0 or plan[1] > self.time]
+        for do in due:
+            do()
 
     def _message(self, stamp):
         joints = {name: float(q) for arm in ARMS for name, q in zip(self.names[arm], self.arms[arm].q, strict=True)}

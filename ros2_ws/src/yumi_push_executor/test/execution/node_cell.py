@@ -105,11 +105,13 @@ class NodeCell:
         self.phases.clear()
         view = self.executor._view
         wait_until(
-            lambda: view.watch.fault(self.executor.instant()) is None
-            and view.driver.mode == DriverState.MOTORS_ON
-            and view.driver.motion_enabled
-            and view.driver.calibrated["left"]
-            and all(np.abs(view.watch.latest.positions[arm] - HOME[arm]).max() < 0.01 for arm in ARMS),
+            lambda: (
+                view.watch.fault(self.executor.instant()) is None
+                and view.driver.mode == DriverState.MOTORS_ON
+                and view.driver.motion_enabled
+                and view.driver.calibrated["left"]
+                and all(np.abs(view.watch.latest.positions[arm] - HOME[arm]).max() < 0.01 for arm in ARMS)
+            ),
             what="good states",
         )
 
@@ -142,7 +144,9 @@ class NodeCell:
 
     def reach(self, phase):
         """Until the feedback has said so."""
-        wait_until(lambda: phase in self.phases, what=phase.name)
+        known = len(self.outcomes.messages)
+        wait_until(lambda: phase in self.phases or len(self.outcomes.messages) > known, what=phase.name)
+        assert phase in self.phases, self.outcomes.messages[-1].message
 
     def stands(self):
         """Whether no joint of either arm moves, by what the driver really does."""

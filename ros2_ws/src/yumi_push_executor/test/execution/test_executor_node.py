@@ -270,41 +270,35 @@ def cut(message):
 
 @pytest.mark.parametrize(("change", "text"), [(drop, "old"), (spoil, "right joint 4 is nan"), (cut, "old")])
 def test_lost_states_end_the_push(cell, change, text):
-    cell.executor.planner.duration = 2.0
-    goal = cell.send()
-    cell.reach(Phase.PUSH)
-    cell.driver.change = change
-    status, result = cell.result(goal)
+    cell.executor.planner.duration = 1.0
+    cell.driver.during(Phase.PUSH, 0.3, lambda: setattr(cell.driver, "change", change))
+    status, result = cell.execute()
     assert (status, ResultCode(result.code)) == (GoalStatus.STATUS_ABORTED, ResultCode.STATE_LOST)
     assert text in result.message
     assert cell.stands()
 
 
 def test_an_emergency_stop_ends_the_push_and_its_release_resumes_nothing(cell):
-    cell.executor.planner.duration = 2.0
-    goal = cell.send()
-    cell.reach(Phase.PUSH)
-    with cell.driver.lock:
+    def press():
         cell.driver.state.mode, cell.driver.state.motion_enabled = DriverState.EMERGENCY_STOP, False
-    assert ended(cell.result(goal)) == (GoalStatus.STATUS_ABORTED, ResultCode.SAFETY_STOP)
+
+    cell.executor.planner.duration = 1.0
+    cell.driver.during(Phase.PUSH, 0.3, press)
+    assert ended(cell.execute()) == (GoalStatus.STATUS_ABORTED, ResultCode.SAFETY_STOP)
     with cell.driver.lock:
         cell.driver.state.mode, cell.driver.state.motion_enabled = DriverState.MOTORS_ON, True
         stopped = cell.driver.arms["left"].q
-    messages = cell.executor._view.messages
-    wait_until(lambda: cell.executor._view.messages > messages + 50, what="a second of states")
+    released = cell.driver.time
+    wait_until(lambda: cell.driver.time > released + 2.0, what="two seconds")
     np.testing.assert_allclose(cell.driver.arms["left"].q, stopped, atol=1e-3)
 
 
 def test_a_held_arm_is_retreated(cell):
-    cell.executor.planner.duration = 2.0
+    cell.executor.planner.duration = 1.5
     lifts = cell.executor.planner.lifts
-    goal = cell.send()
-    cell.reach(Phase.PUSH)
-    with cell.driver.lock:
-        cell.driver.arms["left"].stuck = True
-    cell.reach(Phase.STOPPING)
-    with cell.driver.lock:
-        cell.driver.arms["left"].stuck = False
-    status, result = cell.result(goal)
+    cell.driver.during(Phase.PUSH, 0.4, lambda: setattr(cell.driver.arms["left"], "stuck", True))
+    cell.driver.during(Phase.RETREAT, 0.0, lambda: setattr(cell.driver.arms["left"], "stuck", False))  # the stop
+    status, result = cell.execute()
     assert (status, ResultCode(result.code)) == (GoalStatus.STATUS_ABORTED, ResultCode.NO_PROGRESS)
+    assert result.message.endswith("retreated upwards; left the camera's view")
     assert cell.executor.planner.lifts == lifts + 1

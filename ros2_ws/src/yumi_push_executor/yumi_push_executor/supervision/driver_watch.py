@@ -18,7 +18,7 @@ def driver_fault(status: DriverStatus | None, limits: SupervisionLimits, now: In
     """Why the arm may not move, or None. A collision alone may be followed by a retreat."""
     if status is None:
         return Fault(ResultCode.NOT_READY, "no driver state has come yet")
-    age, silent = now.time - status.seen.time, now.wall - status.seen.wall
+    age, silent = now.time - status.seen.time, now.heard - status.seen.heard
     if not (min(age, silent) <= limits.driver_age) or not (silent <= limits.wall_silence):
         return Fault(
             ResultCode.STATE_LOST, f"the driver has said nothing for {silent:.2f} s, limit {limits.driver_age} s"

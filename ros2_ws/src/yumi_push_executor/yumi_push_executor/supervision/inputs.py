@@ -1,5 +1,6 @@
 """What the supervision sees: the time, measured states and the state of the driver."""
 
+import math
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -8,15 +9,23 @@ from singulation_core.polygon import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """One moment on two clocks [s].
+    """One moment on three clocks [s].
 
     Args:
         time: the clock of states and trajectories; simulated time under ``use_sim_time``, else the steady clock.
         wall: the steady clock of this machine.
+        listened: the steady clock without the times in which this process could not have heard anything, because the
+            machine had no time for it; ``wall`` if NaN. Whoever is silent is silent on this clock.
     """
 
     time: float
     wall: float
+    listened: float = math.nan
+
+    @property
+    def heard(self) -> float:
+        """``listened`` if it is known, else ``wall`` [s]."""
+        return self.wall if math.isnan(self.listened) else self.listened
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -25,7 +34,7 @@ class Sample:
 
     Args:
         taken: when they were measured, by their stamp.
-        arrived: on the steady clock [s].
+        arrived: when it was heard, see ``Instant.heard`` [s].
         positions: (7,) rad per arm, kinematic order; an arm that is not reported is missing.
         velocities: (7,) rad/s per arm; missing if not reported.
         openings: jaw opening per arm [m]; missing if not reported.

@@ -9,7 +9,7 @@ from yumi_push_executor.kinematics.model import ARMS
 from yumi_push_executor.supervision.faults import Fault, Stop
 from yumi_push_executor.supervision.gripper_watch import GripperWatch, drift_fault
 from yumi_push_executor.supervision.holding import hold_arm
-from yumi_push_executor.supervision.inputs import Sample
+from yumi_push_executor.supervision.inputs import Instant, Sample
 from yumi_push_executor.supervision.limits import SupervisionLimits
 from yumi_push_executor.supervision.orders import ArmOrder, JawOrder, Order
 from yumi_push_executor.supervision.segment import Phase, Segment
@@ -58,8 +58,8 @@ class SegmentRun:
         """How much of the present segment is done, 0..1."""
         return self._fraction
 
-    def order_next(self, time: float) -> list[Order]:
-        """Go to the next segment; ``time`` on the clock of the states [s]."""
+    def order_next(self, now: Instant) -> list[Order]:
+        """Go to the next segment."""
         self._index += 1
         self._following, self._jaws, self._fraction = None, None, 0.0
         if self.done:
@@ -67,11 +67,11 @@ class SegmentRun:
             return []
         segment = self.segment
         if segment.trajectory is not None:
-            self._following = FollowingWatch(segment.arm, segment.trajectory, time, self._limits)
+            self._following = FollowingWatch(segment.arm, segment.trajectory, now, self._limits)
             return [ArmOrder(segment.arm, segment.trajectory)]
         assert segment.opening is not None  # a segment has one of the two
         start = self._latest.openings.get(segment.arm, segment.opening)
-        self._jaws = GripperWatch(segment.arm, segment.opening, start, time, self._limits)
+        self._jaws = GripperWatch(segment.arm, segment.opening, start, now.time, self._limits)
         return [JawOrder(segment.arm, segment.opening)]
 
     def judge(self, sample: Sample) -> Fault | None:
@@ -124,7 +124,9 @@ class SegmentRun:
         positions = sample.positions[self.segment.arm]
         duration = max(self._following.trajectory.duration, 1e-6)
         self._fraction = min(max(self._following.elapsed(sample.taken) / duration, 0.0), 1.0)
-        return self._following.check(sample.taken, positions) or self._following.overtime(sample.taken, positions)
+        return self._following.check(sample.taken, sample.arrived, positions) or self._following.overtime(
+            sample.taken, positions
+        )
 
     def _jaw_fault(self, sample: Sample) -> Fault | None:
         arm = self.segment.arm

@@ -9,6 +9,9 @@ from yumi_push_executor.supervision.limits import SupervisionLimits
 from yumi_push_executor.supervision.state_watch import StateWatch
 
 _SPAN = 0.05  # s between the two positions that are compared
+# s for which nothing may have moved. At the slow begin of a motion an arm hardly moves, though the order to stop has not
+# reached its controller yet; it must have had the time to, on the robot's clock and on this machine's.
+_QUIET = 0.1
 
 
 class Settling:
@@ -26,8 +29,8 @@ class Settling:
         self, sent: Instant, believe: bool, quiet: float, watch: StateWatch, limits: SupervisionLimits
     ) -> None:
         self._ordered = sent
-        self._from = sent.time  # standstill counts from here
-        self._quiet = max(quiet, _SPAN)
+        self._from = sent.time, sent.heard  # standstill counts from here
+        self._quiet = max(quiet, _QUIET)
         self._watch = watch
         self._limits = limits
         latest = watch.latest
@@ -42,12 +45,13 @@ class Settling:
             if all(np.array_equal(latest.positions[arm], self._doubted[arm]) for arm in ARMS):
                 return False
             self._doubted = None
-            self._from = latest.taken
+            self._from = latest.taken, latest.arrived
             return False
         earlier = self._watch.before(latest.taken - _SPAN)
         if earlier is None or self._moves(earlier, latest):
-            self._from = latest.taken
-        return latest.taken - self._from >= self._quiet
+            self._from = latest.taken, latest.arrived
+        stood, listened = latest.taken - self._from[0], latest.arrived - self._from[1]
+        return stood >= self._quiet and listened >= _QUIET
 
     def _moves(self, earlier: Sample, latest: Sample) -> bool:
         way = self._limits.stopped_speed * (latest.taken - earlier.taken)

@@ -75,10 +75,10 @@ class StateWatch:
             return Fault(ResultCode.NOT_READY, text, Stop.ALONG_PATH)
         if self._problem:
             return Fault(ResultCode.STATE_LOST, self._problem, Stop.ALONG_PATH)
-        silent, age = now.wall - latest.arrived, now.time - latest.taken
+        silent, age = now.heard - latest.arrived, now.time - latest.taken
         if not (min(silent, age) <= self.limits.state_age) or not (silent <= self.limits.wall_silence):
             text = (
-                f"the last good joint state is {max(age, 0.0):.2f} s old ({silent:.2f} s on the steady clock), limit "
+                f"the last good joint state is {max(age, 0.0):.2f} s old and came {silent:.2f} s ago, limit "
                 f"{self.limits.state_age} s"
             )
             return Fault(ResultCode.STATE_LOST, "; ".join(filter(None, (text, self._delay))), Stop.ALONG_PATH)

@@ -93,7 +93,7 @@ class Supervisor:
         check_segments(self._segments, sample, self._watch.ranges, self._speeds, self._limits)
         self._run = SegmentRun(self._segments, self._watch, self._limits)
         self._guards.stepped(now)
-        self._orders = self._run.order_next(now.time)
+        self._orders = self._run.order_next(now)
         return self._report()
 
     def cancel(self) -> None:
@@ -133,7 +133,7 @@ class Supervisor:
                 break
             fault = run.judge(sample)
             if fault is None and run.finishes(sample):
-                self._orders += run.order_next(now.time)
+                self._orders += run.order_next(now)
                 break  # later samples were taken before the next segment was ordered
         if fault is not None:
             self._stop(fault, now)
@@ -204,7 +204,7 @@ class Supervisor:
         if trajectory is None:
             return False
         self._run = SegmentRun((Segment(Phase.STOPPING, arm, trajectory),), self._watch, self._limits)
-        self._orders += self._run.order_next(now.time)
+        self._orders += self._run.order_next(now)
         self._stage = stage
         return True
 
