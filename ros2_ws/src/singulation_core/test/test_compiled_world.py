@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from singulation_core import Arrangement, ContactMode, InvalidInputError, Push, PusherGeometry, ResultCode
-from singulation_core.push_world import PushPhysics, pusher_footprint, simulate_push, simulate_pushes
+from singulation_core.push_world import Footprint, PushPhysics, pusher_footprint, simulate_push, simulate_pushes
 from singulation_core.push_world.compiled import BLOCKED, DIVERGED, DONE, CompiledWorld
 
 JAWS = PusherGeometry(tip_radius=0.004, edge_width=0.016, edge_thickness=0.008)
@@ -109,6 +109,12 @@ def test_a_table_without_blocks_can_be_pushed_on():
     empty = simulate_pushes(Arrangement([]), [Push((0.0, 0.0), (0.1, 0.0), ContactMode.EDGE, 0.01)], FAST, JAWS)
     assert empty.codes == (ResultCode.OK,)
     assert empty.poses.shape == (1, 0, 3)
+
+
+def test_a_pusher_of_several_polygons_is_refused(block):
+    square = 0.01 * np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
+    with pytest.raises(InvalidInputError, match="2 polygons"):
+        CompiledWorld(Arrangement([block(0, (0.0, 0.0))]), Footprint(polygons=(square, square + 0.02)), FAST, 0.02)
 
 
 def test_only_pymunk_lets_blocks_coast():

@@ -59,10 +59,12 @@ def test_noisy_poses_of_random_blocks_give_no_gain(scene_of):
         assert gain(noisy, simulate_push(noisy, AWAY, None, JAWS)) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_overlaps_that_no_noise_explains_are_refused(block):
-    deep = Arrangement([block(0, (0.0, 0.0)), block(1, (0.004, 0.0))])
-    with pytest.raises(SingulationError, match="overlaps others") as caught:
-        simulate_push(deep, AWAY, None, JAWS)
+@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("offset", [0.0, 0.004, 0.015])
+def test_overlaps_that_no_noise_explains_are_refused(block, preset, offset):
+    deep = Arrangement([block(0, (0.0, 0.0)), block(1, (offset, 0.0))])
+    with pytest.raises(SingulationError, match=r"objects (0 and 1|1 and 0) overlap") as caught:
+        simulate_push(deep, AWAY, PushPhysics.named(preset), JAWS)
     assert caught.value.code is ResultCode.OVERLAPPING_OBJECTS
     apart = Arrangement([block(0, (0.0, 0.0)), block(1, (SIDE, 0.0))])
     assert gain(apart, simulate_push(apart, AWAY, None, JAWS)) == 0.0

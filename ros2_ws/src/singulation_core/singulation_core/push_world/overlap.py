@@ -8,7 +8,27 @@ from singulation_core.polygon import FloatArray, inward_half_planes, signed_area
 from singulation_core.push_world.space import Block, corners
 from singulation_core.result_code import ResultCode
 
-_SMALLEST_SHARE = 0.6  # of a block's area that must survive the cut; less is not perception noise
+_DEEPEST = 0.3  # of the smaller block's bounding radius; a deeper overlap is not perception noise
+_SMALLEST_SHARE = 0.5  # of a block's area that must survive the cuts
+
+
+def refuse_deep_overlap(first: int, second: int, depth: float, radius: float) -> None:
+    """Raise if two blocks overlap by more than noise explains.
+
+    Args:
+        first, second: their ids.
+        depth: of the overlap, in the unit of ``radius``.
+        radius: smaller of their bounding radii.
+
+    Raises:
+        SingulationError: ``OVERLAPPING_OBJECTS``.
+    """
+    if not (depth <= _DEEPEST * radius):
+        raise SingulationError(
+            ResultCode.OVERLAPPING_OBJECTS,
+            f"objects {first} and {second} overlap by {depth / radius:.0%} of the smaller bounding radius, need "
+            f"{_DEEPEST:.0%} at most: perceive the scene again",
+        )
 
 
 def part_overlapping(space: pymunk.Space, blocks: list[Block], slop: float) -> None:
@@ -22,15 +42,24 @@ def part_overlapping(space: pymunk.Space, blocks: list[Block], slop: float) -> N
         slop: overlap that needs no cut.
 
     Raises:
-        SingulationError: ``OVERLAPPING_OBJECTS`` if less than 60 % of a block is left.
+        SingulationError: ``OVERLAPPING_OBJECTS`` if an overlap is too deep, or too little of a block is left.
     """
     areas = [block.shape.area for block in blocks]
     rank: dict[pymunk.Shape, int] = {block.shape: position for position, block in enumerate(blocks)}
     for first, block in enumerate(blocks):
         for hit in space.shape_query(block.shape):
             second = rank.get(hit.shape, -1) if hit.shape is not None else -1
-            if second > first and min(point.distance for point in hit.contact_point_set.points) < -slop:
+            if second > first and (_deep(hit, slop) or _nearly_concentric(block, blocks[second])):
                 _part(block, blocks[second], slop, areas[first], areas[second])
+
+
+def _deep(hit: pymunk.ShapeQueryInfo, slop: float) -> bool:
+    return min(point.distance for point in hit.contact_point_set.points) < -slop
+
+
+def _nearly_concentric(first: Block, second: Block) -> bool:
+    """Whether Chipmunk may not see at all how deep they overlap."""
+    return first.body.position.get_distance(second.body.position) < 0.5
 
 
 def _part(first: Block, second: Block, slop: float, first_area: float, second_area: float) -> None:
@@ -38,6 +67,8 @@ def _part(first: Block, second: Block, slop: float, first_area: float, second_ar
     one, other = corners(first.shape, first.body), corners(second.shape, second.body)
     depth, normal, border = max(_least_overlap(one, other), _turned_round(_least_overlap(other, one)), key=_height)
     if depth < -slop:
+        radius = min(float(np.hypot(*np.array(block.shape.get_vertices()).T).max()) for block in (first, second))
+        refuse_deep_overlap(first.id, second.id, -depth, radius)
         _cut(first, one, normal, border, first_area)
         _cut(second, other, -normal, -border, second_area)
 

@@ -103,4 +103,4 @@ def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
 
 def perform(setting: Setting, arrangement: Arrangement, push: Push) -> Arrangement:
     """The arrangement after a push, simulated with the physics of the setting."""
-    return simulate_push(arrangement, push, setting.physics, setting.pusher, setting.physics_unit)
+    return simulate_push(arrangement, push, setting.physics, setting.pusher)

@@ -22,7 +22,6 @@ class Setting:
         push_distance: travel from start to end [m]; None: one bounding radius after contact.
         placement: of the start.
         physics: that simulates the pushes, those of planners too.
-        physics_unit: length the physics calls 1 [m]; None: the mean bounding radius of a scene.
         options: of policies, by name.
     """
 
@@ -33,7 +32,6 @@ class Setting:
     push_distance: float | None
     placement: Placement
     physics: PushPhysics
-    physics_unit: float | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
@@ -63,7 +61,6 @@ SETTINGS: Mapping[str, Setting] = {
             4.0 * UNIT,
             Placement(),
             PushPhysics.authors(),
-            UNIT,
             {"brute_force": {"grid": "chords"}},
         ),
     )

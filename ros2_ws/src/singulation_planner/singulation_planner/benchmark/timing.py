@@ -82,7 +82,7 @@ def _per_push(setting: Setting, physics: PushPhysics, count: int, pushes: int) -
         planned = [plan(setting, scenario, Job(name)) for name in ("cluster_push", "min_overlap", "boundary_shear")]
         many = (planned * pushes)[:pushes]
         started = time.process_time()
-        simulate_pushes(scenario.arrangement, many, physics, setting.pusher, setting.physics_unit)
+        simulate_pushes(scenario.arrangement, many, physics, setting.pusher)
         times.append((time.process_time() - started) / pushes)
     return float(np.median(times))
 

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from singulation_core.arrangement import Arrangement
+from singulation_core.errors import InvalidInputError
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.rollout import DONE, measure_overlaps, roll_out_many
 from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State
 from singulation_core.push_world.footprint import Footprint
+from singulation_core.push_world.overlap import refuse_deep_overlap
 from singulation_core.push_world.physics import HEALED, TOUCHING, PushPhysics
 
 
@@ -18,12 +20,20 @@ class CompiledWorld:
 
     Args:
         arrangement: where the blocks lie; overlaps there are left as they are.
-        footprint: of the pusher.
+        footprint: of the pusher, with at most one polygon.
         physics: quasi-static; its engine is not asked for.
         unit: length that ``physics`` calls 1 [m].
+
+    Raises:
+        InvalidInputError: a footprint of several polygons.
+        SingulationError: ``OVERLAPPING_OBJECTS`` beyond what perception noise explains.
     """
 
     def __init__(self, arrangement: Arrangement, footprint: Footprint, physics: PushPhysics, unit: float) -> None:
+        if len(footprint.polygons) > 1:
+            raise InvalidInputError(
+                f"compiled push world: {len(footprint.polygons)} polygons in the footprint, need 0 or 1"
+            )
         count = len(arrangement)
         self._unit = unit
         self._origins = arrangement.centroids / unit
@@ -41,6 +51,13 @@ class CompiledWorld:
             physics.settle_steps,
         )
         measure_overlaps(self._shapes, self._state, self._origins)
+        self._refuse_deep_overlaps(arrangement)
+
+    def _refuse_deep_overlaps(self, arrangement: Arrangement) -> None:
+        for one, other in np.argwhere(self._state.slack > 0.0).tolist():
+            radius = float(min(self._shapes.radii[one], self._shapes.radii[other]))
+            ids = arrangement.objects[one].id, arrangement.objects[other].id
+            refuse_deep_overlap(*ids, float(self._state.slack[one, other]), radius)
 
     def roll_out(self, starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, IntArray]:
         """Outcomes of pushes. Calls from several threads need a world each; the interpreter is free meanwhile.
@@ -78,37 +95,36 @@ def _step(arrangement: Arrangement, footprint: Footprint, physics: PushPhysics, 
 
 
 def _shapes(arrangement: Arrangement, footprint: Footprint, densities: Sequence[float], unit: float) -> Shapes:
-    outlines = [(item.outline - item.centroid) / unit for item in arrangement.objects]
-    pusher = [one / unit for one in footprint.polygons]
-    sizes = [len(one) for one in outlines] + [sum(len(one) for one in pusher)]
-    firsts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
-    vertices = np.concatenate([*outlines, *pusher, np.empty((0, 2))])
-    normals = np.concatenate([_outward(one) for one in (*outlines, *pusher)] + [np.empty((0, 2))])
-    masses = np.array([item.area for item in arrangement.objects]) / unit**2 * np.array(densities)
-    inertia = masses * np.array([_squared_gyration(one) for one in outlines])
-    mobility = np.zeros((len(outlines) + 1, 2))
-    mobility[:-1, 0], mobility[:-1, 1] = 1.0 / masses, 1.0 / inertia
+    """All outlines at once: a planner makes a world for each plan."""
+    outlines = [item.outline for item in arrangement.objects]
+    count = len(outlines)
+    firsts = np.zeros(count + 2, dtype=np.int64)
+    sizes = [len(one) for one in outlines]
+    np.cumsum([*sizes, sum(len(one) for one in footprint.polygons)], out=firsts[1:])
+    shift = np.zeros((int(firsts[-1]), 2))
+    shift[: firsts[count]] = np.repeat(arrangement.centroids, sizes, axis=0)
+    vertices = (np.concatenate([*outlines, *footprint.polygons, np.empty((0, 2))]) - shift) / unit
+    following = np.arange(1, len(vertices) + 1)
+    following[firsts[1:][np.diff(firsts) > 0] - 1] = firsts[:-1][np.diff(firsts) > 0]
+    edges = vertices[following] - vertices
+    normals = np.column_stack((edges[:, 1], -edges[:, 0])) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+    mobility, inner_radii = np.zeros((count + 1, 2)), np.zeros(count + 1)
+    if count:
+        starts, blocks = firsts[:count], slice(0, firsts[count])
+        masses = np.array([item.area for item in arrangement.objects]) / unit**2 * np.array(densities)
+        gyration = _squared_gyration(vertices[blocks], vertices[following][blocks], starts)
+        mobility[:-1, 0], mobility[:-1, 1] = 1.0 / masses, 1.0 / (masses * gyration)
+        inner_radii[:-1] = np.minimum.reduceat((vertices * normals).sum(axis=1)[blocks], starts)
     radii = np.append(arrangement.bounding_radii, footprint.reach) / unit
     discs = np.array([(one.x, one.y, one.radius) for one in footprint.discs]).reshape(-1, 3) / unit
-    inner_radii = np.array([_inner_radius(one) for one in outlines] + [0.0])
     return Shapes(firsts, vertices, normals, radii, inner_radii, mobility, discs)
 
 
-def _outward(outline: FloatArray) -> FloatArray:
-    edges = np.roll(outline, -1, axis=0) - outline
-    return np.column_stack((edges[:, 1], -edges[:, 0])) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
-
-
-def _inner_radius(outline: FloatArray) -> float:
-    return float((outline * _outward(outline)).sum(axis=1).min())
-
-
-def _squared_gyration(outline: FloatArray) -> float:
-    """Moment of inertia about the origin over the mass of a polygon around its centroid."""
-    following = np.roll(outline, -1, axis=0)
-    weights = outline[:, 0] * following[:, 1] - outline[:, 1] * following[:, 0]
-    squares = (outline**2 + outline * following + following**2).sum(axis=1)
-    return float((weights * squares).sum() / (6.0 * weights.sum()))
+def _squared_gyration(vertices: FloatArray, following: FloatArray, starts: IntArray) -> FloatArray:
+    """Moment of inertia over mass of polygons about the origin, from their edges (v, 2) to (v, 2)."""
+    weights = vertices[:, 0] * following[:, 1] - vertices[:, 1] * following[:, 0]
+    squares = (vertices**2 + vertices * following + following**2).sum(axis=1)
+    return np.asarray(np.add.reduceat(weights * squares, starts) / (6.0 * np.add.reduceat(weights, starts)))
 
 
 def _state(shapes: Shapes) -> State:
