@@ -1,6 +1,7 @@
 """An arrangement as flat arrays in an order that does not depend on how its objects are numbered."""
 
 from dataclasses import dataclass
+from math import fsum, hypot
 from typing import Self
 
 import numpy as np
@@ -16,10 +17,10 @@ OVERLAP_TOLERANCE = 0.15  # in units of the smaller bounding radius
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Objects sorted by size, then by position: ties between scores are broken by this order.
+    """Objects sorted by size, then by distance from the middle: ties between scores are broken by this order.
 
-    Sizes do not change when the scene is turned or moved, so neither does the order unless two objects are congruent;
-    then the one with smaller x, or else smaller y, comes first.
+    Neither changes when the scene is turned or moved. Two congruent objects equally far from the middle (or the only
+    two there are) cannot be told apart in this way; of them the one with smaller x, or else smaller y, comes first.
 
     Attributes:
         arrangement: where it comes from.
@@ -89,9 +90,19 @@ class Scene:
 
 
 def _canonical_order(arrangement: Arrangement) -> tuple[int, ...]:
-    largest = max(item.bounding_radius for item in arrangement.objects)
+    objects, n = arrangement.objects, len(arrangement)
+    positions = arrangement.centroids.tolist()
+    # fsum rounds once, at the end: the same mean in whatever order the objects are numbered.
+    mean_x, mean_y = fsum(x for x, _ in positions) / n, fsum(y for _, y in positions) / n
+    largest = max(item.bounding_radius for item in objects)
     keys = [
-        (round(item.bounding_radius / largest, 6), round(item.area / largest**2, 6), *item.centroid.tolist())
-        for item in arrangement.objects
+        (
+            round(item.bounding_radius / largest, 6),
+            round(item.area / largest**2, 6),
+            round(hypot(x - mean_x, y - mean_y) / largest, 6),
+            x,
+            y,
+        )
+        for item, (x, y) in zip(objects, positions, strict=True)
     ]
-    return tuple(sorted(range(len(keys)), key=keys.__getitem__))
+    return tuple(sorted(range(n), key=keys.__getitem__))

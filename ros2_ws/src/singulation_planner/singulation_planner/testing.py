@@ -53,6 +53,18 @@ def _first_free(item: PlanarObject, way: FloatArray, placed: list[PlanarObject],
         distance += step
 
 
+def turned_squares(count: int, seed: int) -> Arrangement:
+    """``count`` congruent squares lying about in all directions, as wooden blocks of one kind do."""
+    random, side = np.random.default_rng(seed), squares([(0.0, 0.0)]).objects[0].outline
+    placed: list[PlanarObject] = []
+    while len(placed) < count:
+        shift = random.uniform(-_RADIUS, _RADIUS, 2) * np.sqrt(count)
+        item = PlanarObject(len(placed), side).moved(shift, random.uniform(0.0, 2.0 * np.pi))
+        if all(separation(item.outline, other.outline) > 0.0 for other in placed):
+            placed.append(item)
+    return Arrangement(placed)
+
+
 def squares(centres: Sequence[tuple[float, float]], half: float = 0.01) -> Arrangement:
     """Axis-parallel squares at the given centres [m]."""
     corners = half * np.array(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from singulation_core import Arrangement, ContactMode, PlanarObject, PusherGeometry
 from singulation_planner import POLICIES, Placement, plan_push
-from singulation_planner.testing import clutter
+from singulation_planner.testing import clutter, turned_squares
 
 GEOMETRIC = sorted(set(POLICIES) - {"brute_force"})
 SQUARE = 0.2 * np.array(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
@@ -67,6 +67,13 @@ motions = st.tuples(
 @settings(max_examples=25, deadline=None)
 @given(scenes, modes, motions)
 def test_the_plan_moves_turns_and_scales_with_the_scene(policy, arrangement, mode, motion):
+    check_motion(arrangement, policy, mode, motion)
+
+
+@pytest.mark.parametrize("policy", GEOMETRIC)
+@settings(max_examples=15, deadline=None)
+@given(st.builds(turned_squares, st.integers(3, 8), st.integers(0, 10**6)), modes, motions)
+def test_so_does_the_plan_of_equal_blocks(policy, arrangement, mode, motion):
     check_motion(arrangement, policy, mode, motion)
 
 
