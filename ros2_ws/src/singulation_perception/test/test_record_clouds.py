@@ -51,7 +51,7 @@ def test_clouds_are_recorded_as_they_were_published(bench, tmp_path):
     camera, record = bench
     points = camera.create_publisher(PointCloud2, "points", QoSProfile(depth=5))
     process = record(tmp_path / "bag", "--count", 3)
-    wait_until(lambda: points.get_subscription_count() > 0)
+    wait_until(lambda: points.get_subscription_count() > 0, 60)
     cloud = scene()
     for number in range(3):
         points.publish(message(cloud, (number + 1) * 10**9))
@@ -67,7 +67,7 @@ def test_ctrl_c_leaves_a_complete_bag_of_all_topics(bench, tmp_path):
     latched.publish(String(data="said before anybody listened"))
     points = camera.create_publisher(PointCloud2, "points", QoSProfile(depth=5))
     process = record(tmp_path / "bag", "--topics", "name", "points")
-    wait_until(lambda: points.get_subscription_count() > 0)
+    wait_until(lambda: points.get_subscription_count() > 0, 60)
     points.publish(message(scene(), 10**9))
     assert points.wait_for_all_acked(rclpy.duration.Duration(seconds=20))
     process.send_signal(signal.SIGINT)

@@ -123,7 +123,7 @@ def test_a_key_sends_one_cloud_and_q_ends(tmp_path):
                 os.write(keyboard, b" ")
                 assert f"cloud {number} of 3" in process.stderr.readline()
             os.write(keyboard, b"q")
-            errors = process.communicate(timeout=20)[1]
+            errors = process.communicate(timeout=60)[1]
             assert termios.tcgetattr(terminal)[3] & termios.ICANON, "the terminal was not put back"
         finally:
             process.kill()
@@ -227,6 +227,6 @@ def test_a_signal_ends_it_cleanly(replay, tmp_path, number):
     process = replay(bag, "--loop", "--wait", "0")
     wait_until(lambda: "cloud 1 of 3" in process.stderr.readline())
     process.send_signal(number)
-    errors = process.communicate(timeout=20)[1]
+    errors = process.communicate(timeout=60)[1]
     assert process.returncode == 0
     assert "Traceback" not in errors
