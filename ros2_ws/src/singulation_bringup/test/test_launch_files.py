@@ -41,7 +41,17 @@ KNOWN = {
     "launch_ros.parameter_descriptions": {"ParameterValue"},
     "launch_ros.substitutions": {"FindPackageShare"},
 }
-NODE_KEYWORDS = {"package", "executable", "name", "output", "parameters", "remappings", "arguments", "condition"}
+NODE_KEYWORDS = {
+    "package",
+    "executable",
+    "name",
+    "output",
+    "parameters",
+    "remappings",
+    "arguments",
+    "ros_arguments",
+    "condition",
+}
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 every_node = pytest.mark.parametrize(
     ("path", "node"),
