@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import rclpy
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
@@ -38,15 +39,19 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
     """
     arguments = list(sys.argv if args is None else args)
     autostart = "--autostart" in arguments
-    stop = threading.Event()
+    starting, stop = threading.Event(), threading.Event()
+    starting.set()
     rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     try:
         executor = MultiThreadedExecutor(num_threads=threads)
-        _stop_on_signals(stop, executor)
+        _stop_on_signals(starting, stop, executor)
         node = factory()
         try:
             executor.add_node(node)
-            if isinstance(node, ManagedNode) and (autostart or node.autostart) and not node.start():
+            wanted = isinstance(node, ManagedNode) and (autostart or node.autostart)
+            configured = not wanted or node.trigger_configure() == TransitionCallbackReturn.SUCCESS
+            starting.clear()  # configuring may take long (it compiles) and can be interrupted, activating is quick
+            if not configured or (wanted and node.trigger_activate() != TransitionCallbackReturn.SUCCESS):
                 return 1
             _spin(executor, node, stop)
             if isinstance(node, ManagedNode) and node.is_active:
@@ -58,6 +63,8 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
     except SingulationError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:  # a signal before the node was there
+        return 0
     finally:
         rclpy.try_shutdown()
     return 0
@@ -69,10 +76,15 @@ def plain_arguments(args: Sequence[str] | None = None) -> list[str]:
     return [item for item in arguments[1:] if item != "--autostart"]
 
 
-def _stop_on_signals(stop: threading.Event, executor: Any) -> None:
+def _stop_on_signals(starting: threading.Event, stop: threading.Event, executor: Any) -> None:
+    """Signals end the spinning; while the node still starts (and compiles, perhaps), they end that at once."""
+
     def handle(number: int, frame: FrameType | None) -> None:
         stop.set()
         executor.wake()
+        if starting.is_set():
+            starting.clear()
+            raise KeyboardInterrupt
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, handle)

@@ -12,6 +12,7 @@ from singulation_node.testing import wait_until
 
 PROGRAM = """
 import sys
+import time
 from dataclasses import dataclass
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
@@ -24,6 +25,10 @@ class Settings:
 class Quiet(ManagedNode):
     def __init__(self):
         super().__init__("quiet", Settings)
+    def configure(self):
+        if "slow" in sys.argv:
+            print("compiling", flush=True)
+            time.sleep(60.0)
     def activate(self):
         print("active", flush=True)
     def deactivate(self):
@@ -66,6 +71,16 @@ def test_a_signal_deactivates_and_ends_it_without_a_traceback(start, number):
     output, errors = process.communicate(timeout=20)
     assert process.returncode == 0
     assert output == "stopped\n"
+    assert "Traceback" not in errors
+
+
+def test_a_signal_ends_a_slow_start_at_once(start):
+    process = start("--autostart", "slow")
+    assert process.stdout.readline() == "compiling\n"
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=20)
+    assert process.returncode == 0
+    assert output == ""
     assert "Traceback" not in errors
 
 
