@@ -19,7 +19,7 @@ from singulation_core.conversions import stamp_of
 from singulation_node.qos import COMMAND, STATE
 from yumi_push_executor.supervision import Phase, Trajectory
 
-PERIOD = 0.02  # s of its own time between joint states
+PERIOD = 0.024  # s of its own time between joint states
 SPEED = 5.0
 NAMES = {arm: tuple(f"yumi_rob{arm[0]}_joint_{number}" for number in range(1, 8)) for arm in ARMS}
 FINGERS = {"left": "gripper_l_joint", "right": "gripper_r_joint"}

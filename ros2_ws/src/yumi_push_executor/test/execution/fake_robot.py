@@ -8,7 +8,7 @@ from yumi_push_executor.kinematics import CLEAR_VIEW, YumiArm
 from yumi_push_executor.supervision import JointRange, Phase, Segment, Trajectory
 
 ARMS = ("left", "right")
-CYCLE = 0.004  # s
+CYCLE = 0.008  # s; 125 Hz
 MODEL = {arm: YumiArm(arm) for arm in ARMS}
 RANGES = {arm: JointRange(MODEL[arm].lower, MODEL[arm].upper) for arm in ARMS}
 SPEEDS = {arm: MODEL[arm].velocity for arm in ARMS}

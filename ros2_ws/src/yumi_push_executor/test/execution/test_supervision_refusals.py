@@ -41,7 +41,7 @@ def test_the_first_states_are_not_real(refusal, value, text):
 
 def test_states_have_stopped(rig, refusal):
     rig.corrupt = lambda sample: None
-    for _ in range(100):
+    for _ in range(50):
         rig.cycle()
     code, text = refusal(rig)
     assert code is ResultCode.STATE_LOST
@@ -73,7 +73,7 @@ def test_the_driver_has_never_spoken(rig, refusal):
 
 def test_the_driver_is_silent(rig, refusal):
     rig.driver_talks = False
-    for _ in range(300):
+    for _ in range(150):
         rig.cycle()
     assert refusal(rig)[0] is ResultCode.STATE_LOST
     assert accepted_afterwards(rig)

@@ -27,11 +27,11 @@ class GripperWatch:
 
     def check(self, taken: float, opening: float) -> Fault | None:
         """Judge one measured opening [m]."""
-        if not (abs(opening - self._target) <= self._limits.opening_tolerance):
-            self._right_since = math.inf
-        elif self._right_since == math.inf:
-            self._right_since = taken
-        if not (taken <= self._deadline) and not self.finished(taken):
+        if abs(opening - self._target) <= self._limits.opening_tolerance:
+            self._right_since = min(self._right_since, taken)
+            return None
+        self._right_since = math.inf
+        if not (taken <= self._deadline):
             return Fault(
                 ResultCode.GRIPPER_STUCK,
                 f"the {self._arm} jaws stand at {opening * 1e3:.1f} mm and not at {self._target * 1e3:.1f} mm "

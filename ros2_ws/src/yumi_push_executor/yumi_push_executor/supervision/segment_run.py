@@ -124,9 +124,10 @@ class SegmentRun:
         positions = sample.positions[self.segment.arm]
         duration = max(self._following.trajectory.duration, 1e-6)
         self._fraction = min(max(self._following.elapsed(sample.taken) / duration, 0.0), 1.0)
-        return self._following.check(sample.taken, sample.arrived, positions) or self._following.overtime(
-            sample.taken, positions
-        )
+        fault = self._following.check(sample.taken, sample.arrived, positions)
+        if fault is not None or self._following.finished(sample.taken, positions, self._watch.speed(self.segment.arm)):
+            return fault
+        return self._following.overtime(sample.taken, positions)
 
     def _jaw_fault(self, sample: Sample) -> Fault | None:
         arm = self.segment.arm

@@ -9,8 +9,8 @@ from yumi_push_executor.supervision.limits import SupervisionLimits
 from yumi_push_executor.supervision.state_watch import StateWatch
 
 _SPAN = 0.05  # s between the two positions that are compared
-# s for which nothing may have moved. At the slow begin of a motion an arm hardly moves, though the order to stop has not
-# reached its controller yet; it must have had the time to, on the robot's clock and on this machine's.
+# s for which nothing may have moved. At the slow begin of a motion an arm hardly moves, though the order to stop has
+# not reached its controller yet; it must have had the time to, on the robot's clock and on this machine's.
 _QUIET = 0.1
 
 
