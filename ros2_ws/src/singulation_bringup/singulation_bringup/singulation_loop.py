@@ -15,6 +15,7 @@ from singulation_core import (
     singulation_distance,
     smallest_gap,
 )
+from singulation_core.push_world import simulate_push
 
 
 class Cell(Protocol):
@@ -81,6 +82,16 @@ class Progress:
     counts: list[int] = field(default_factory=list)
     lost: set[int] = field(default_factory=set)
 
+    def repeat_last_look(self) -> None:
+        """Nothing new was seen."""
+        for values in (self.distances, self.gaps, self.counts):
+            values.append(values[-1])  # type: ignore[attr-defined]  # lists of float and int
+
+    def forget_last_look(self) -> None:
+        """Another look takes its place."""
+        for values in (self.distances, self.gaps, self.counts):
+            values.pop()  # type: ignore[attr-defined]
+
 
 @dataclass(frozen=True, slots=True)
 class SingulationResult:
@@ -100,14 +111,18 @@ _TRY_ANOTHER = {
     ResultCode.CONTACT_WIDTH,
     ResultCode.START_TOO_FAR,
 }
-# The push was begun and stopped; the table may have changed, so a new look decides.
+# The push was begun and stopped, and everything stands; the table may have changed, so a new look decides.
 LOOK_AGAIN = {
     ResultCode.COLLISION_STOP,
     ResultCode.NO_PROGRESS,
     ResultCode.PATH_TOLERANCE,
     ResultCode.GOAL_TOLERANCE,
+    ResultCode.STATE_LOST,
+    ResultCode.TIMEOUT,
     ResultCode.STALE_INPUT,
 }
+# What the planner cannot work on may be an unlucky look.
+_DOUBTFUL_LOOK = {ResultCode.STALE_INPUT, ResultCode.OVERLAPPING_OBJECTS}
 _MAX_FAILURES_IN_A_ROW = 2
 
 # What a finger needs to come down between two blocks: 12 mm wide at its tip, and it may stand at any heading [m].
@@ -134,6 +149,8 @@ class SingulationLoop:
         self._tracker = Tracker()
         self._unit: float | None = None
         self._progress = Progress()
+        self._seen = Arrangement(())
+        self._tracked = self._tracker.update(self._seen)
 
     def run(self) -> SingulationResult:
         """Until separated, out of pushes, nothing helps, cancelled, or a fault that is not got over. Never raises
@@ -147,47 +164,75 @@ class SingulationLoop:
         return SingulationResult(code, message, self._progress)
 
     def _push_until_separated(self) -> tuple[ResultCode, str]:
-        seen, tracked = self._look()
+        self._look()
         failures = 0
         while True:
             gap, pushes = self._progress.gaps[-1], len(self._progress.outcomes)
             if gap >= self._goal.min_gap:
-                return self._end(len(seen), gap, pushes)
+                return self._end(gap, pushes)
             if pushes >= self._goal.max_pushes:
                 return ResultCode.MAX_PUSHES_REACHED, (
                     f"smallest gap {1e3 * gap:.1f} mm after {pushes} pushes, need {1e3 * self._goal.min_gap:.1f} mm"
                 )
-            push, failure = self._push(seen)
-            if failure is not None and failure.code not in LOOK_AGAIN:
-                self._record(push, failure, tracked, tracked)
-                raise failure
-            before, (seen, tracked) = tracked, self._look()
-            self._record(push, failure, before, tracked)
+            failure = self._push_and_look()
             failures = 0 if failure is None else failures + 1
-            if failures >= _MAX_FAILURES_IN_A_ROW:
+            if failure is not None and failures >= _MAX_FAILURES_IN_A_ROW:
                 raise SingulationError(
-                    ResultCode.PUSH_FAILED, f"{failures} pushes in a row failed, the last: {failure}"
+                    ResultCode.PUSH_FAILED, f"{failures} attempts in a row failed, the last: {failure}"
                 )
 
-    def _end(self, count: int, gap: float, pushes: int) -> tuple[ResultCode, str]:
+    def _end(self, gap: float, pushes: int) -> tuple[ResultCode, str]:
         """Everything seen is separated; a block that is not seen may hide in another one's outline."""
         code = ResultCode.OBJECT_LOST if self._progress.lost else ResultCode.OK
-        return code, _separated(count, gap, pushes)
+        return code, _separated(len(self._seen), gap, pushes)
 
-    def _look(self) -> tuple[Arrangement, Tracked]:
+    def _push_and_look(self) -> SingulationError | None:
+        """One attempt; what went wrong with it, if a new look may help.
+
+        Raises:
+            SingulationError: what a new look does not help against. A push that was begun is on record all the same.
+        """
+        before = self._tracked
+        try:
+            push, failure = self._push()
+        except SingulationError as error:
+            if error.code not in _DOUBTFUL_LOOK:
+                raise
+            self._progress.forget_last_look()
+            self._look()
+            return error
+        if failure is not None and failure.code is ResultCode.NOT_READY:
+            # Refused before anything moved: an executor that has just joined has not heard of this view yet.
+            self._progress.forget_last_look()
+            self._look()
+            return failure
+        if failure is not None and failure.code not in LOOK_AGAIN:
+            self._record(push, failure, before)
+            raise failure
+        try:
+            self._look(expected=_expected(push, failure, before))
+        except SingulationError as blind:
+            self._record(push, failure, before, f"nothing was seen after it: {blind.message}")
+            raise
+        self._record(push, failure, before)
+        return failure
+
+    def _look(self, expected: Arrangement | None = None) -> None:
         self._cell.check_cancelled()
         seen = self._cell.look()
         if self._unit is None and len(seen) > 0:
             self._unit = float(seen.bounding_radii.mean())
-        tracked = self._tracker.update(seen)
-        self._progress.lost = (self._progress.lost | set(tracked.lost)) - set(tracked.lasting_ids.values())
+        tracked = self._tracker.update(seen, expected)
+        self._seen, self._tracked = seen, tracked
+        lost = self._progress.lost - set(tracked.divided) | set(tracked.lost)
+        self._progress.lost = lost - set(tracked.lasting_ids.values())
         self._progress.distances.append(singulation_distance(seen, self._unit))
-        self._progress.gaps.append(smallest_gap(seen))
+        # Two blocks that are seen as one touch.
+        self._progress.gaps.append(min(smallest_gap(seen), 0.0 if tracked.covered else math.inf))
         self._progress.counts.append(len(seen))
         self._report(self._progress)
-        return seen, tracked
 
-    def _push(self, seen: Arrangement) -> tuple[Push, SingulationError | None]:
+    def _push(self) -> tuple[Push, SingulationError | None]:
         """Perform the first proposed push that is not refused; with it what stopped it, if anything did.
 
         Raises:
@@ -197,7 +242,7 @@ class SingulationLoop:
         for policy in dict.fromkeys((self._goal.policy, *self._goal.fallback_policies)):
             self._cell.check_cancelled()
             try:
-                push = self._cell.plan(seen, policy, self._goal.contact_mode)
+                push = self._cell.plan(self._seen, policy, self._goal.contact_mode)
             except SingulationError as error:
                 if error.code not in _TRY_ANOTHER:
                     raise
@@ -213,23 +258,32 @@ class SingulationLoop:
             return push, None
         raise SingulationError(ResultCode.NO_HELPFUL_PUSH, "; ".join(refusals))
 
-    def _record(self, push: Push, failure: SingulationError | None, before: Tracked, after: Tracked) -> None:
-        distances, gaps, counts = self._progress.distances, self._progress.gaps, self._progress.counts
-        if after is before:  # no look followed; there is still one value for every push
-            distances.append(distances[-1])
-            gaps.append(gaps[-1])
-            counts.append(counts[-1])
+    def _record(self, push: Push, failure: SingulationError | None, before: Tracked, note: str = "") -> None:
+        progress = self._progress
+        if self._tracked is before:  # no look followed; there is still one value for every push
+            progress.repeat_last_look()
+        texts = ["" if failure is None else failure.message, note]
         outcome = Outcome(
             _with_lasting_target(push, before),
             ResultCode.OK if failure is None else failure.code,
-            "" if failure is None else failure.message,
+            "; ".join(text for text in texts if text),
             before.arrangement,
-            after.arrangement,
-            distances[-2],
-            distances[-1],
+            self._tracked.arrangement,
+            progress.distances[-2],
+            progress.distances[-1],
         )
-        self._progress.outcomes.append(outcome)
-        self._report(self._progress)
+        progress.outcomes.append(outcome)
+        self._report(progress)
+
+
+def _expected(push: Push, failure: SingulationError | None, before: Tracked) -> Arrangement | None:
+    """Where a push that was not stopped should have left the blocks; None if that cannot be said."""
+    if failure is not None:
+        return None
+    try:
+        return simulate_push(before.arrangement, push)
+    except SingulationError:
+        return None
 
 
 def _with_lasting_target(push: Push, tracked: Tracked) -> Push:

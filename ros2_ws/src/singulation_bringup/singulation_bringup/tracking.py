@@ -1,12 +1,13 @@
 """Which block of this look is which block of the last one: perception numbers them anew every time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from singulation_core import Arrangement, PlanarObject
-from singulation_core.polygon import FloatArray
+from singulation_core.polygon import FloatArray, contains
 
 _FORBIDDEN = 1e6
 
@@ -33,14 +34,18 @@ class Tracked:
     Args:
         arrangement: objects under lasting ids.
         lasting_ids: perception's id -> lasting id.
-        lost: lasting ids of the last look that are not seen now.
+        lost: lasting ids of blocks that are known and not seen now.
+        covered: of them, those that should lie where another block is seen: the two may be seen as one.
         found: lasting ids that are new.
+        divided: lasting ids that are given up, because what they named is now seen as several blocks.
     """
 
     arrangement: Arrangement
     lasting_ids: dict[int, int]
     lost: tuple[int, ...]
+    covered: tuple[int, ...]
     found: tuple[int, ...]
+    divided: tuple[int, ...]
 
 
 class Tracker:
@@ -51,24 +56,53 @@ class Tracker:
         self._known: dict[int, PlanarObject] = {}
         self._next_id = 0
 
-    def update(self, seen: Arrangement) -> Tracked:
-        """Match a look to the last one by pose and shape (least total cost, one to one)."""
+    def update(self, seen: Arrangement, expected: Arrangement | None = None) -> Tracked:
+        """Match a look to what is known, by pose and shape (least total cost, one to one).
+
+        Args:
+            seen: the look, under perception's ids.
+            expected: where known blocks should be by now, under lasting ids, as a simulated push has them; the others
+                are expected where they were seen last. In a row of equal blocks that were pushed along by one block's
+                length, nothing else tells which is which.
+        """
+        self._known |= {item.id: item for item in (expected.objects if expected else ()) if item.id in self._known}
         known = list(self._known.items())
         pairs = _match([item for _, item in known], list(seen.objects), self._parameters)
         lasting: dict[int, int] = {}
-        found = []
         for position, item in enumerate(seen.objects):
-            if position in pairs:
-                lasting[item.id] = known[pairs[position]][0]
-            else:
-                lasting[item.id] = self._next_id
-                found.append(self._next_id)
-                self._next_id += 1
-        lost = tuple(identity for identity in self._known if identity not in lasting.values())
+            lasting[item.id] = known[pairs[position]][0] if position in pairs else self._new_id()
         objects = [renamed(item, lasting[item.id]) for item in seen.objects]
+        found = [item for item in objects if item.id not in self._known]
+        lost = {identity: item for identity, item in self._known.items() if identity not in lasting.values()}
+        divided = [identity for identity, item in lost.items() if _is_divided(item, found, self._parameters)]
+        for identity in divided:
+            del self._known[identity], lost[identity]
         # A block that is hidden for one look keeps its place, so that it is recognised when it is seen again.
         self._known |= {item.id: item for item in objects}
-        return Tracked(Arrangement(objects, seen.frame, seen.stamp), lasting, lost, tuple(found))
+        covered = [identity for identity, item in lost.items() if _is_covered(item, objects)]
+        return Tracked(
+            Arrangement(objects, seen.frame, seen.stamp),
+            lasting,
+            tuple(lost),
+            tuple(covered),
+            tuple(item.id for item in found),
+            tuple(divided),
+        )
+
+    def _new_id(self) -> int:
+        self._next_id += 1
+        return self._next_id - 1
+
+
+def _is_divided(item: PlanarObject, found: Sequence[PlanarObject], limits: TrackingParameters) -> bool:
+    """Whether several new blocks lie where one was, and are about as large together."""
+    parts = [one for one in found if contains(item.outline, one.centroid)[0]]
+    whole = sum(one.area for one in parts)
+    return len(parts) > 1 and max(item.area / whole, whole / item.area) - 1.0 <= limits.area_change
+
+
+def _is_covered(item: PlanarObject, objects: Sequence[PlanarObject]) -> bool:
+    return any(contains(one.outline, item.centroid)[0] for one in objects)
 
 
 def renamed(item: PlanarObject, identity: int) -> PlanarObject:

@@ -122,7 +122,8 @@ def test_an_unknown_policy_ends_it_with_the_planners_words():
 def test_cancelling_keeps_what_was_done():
     result, _ = run(ScriptedCell(cancel_after=2), contact_mode=ContactMode.SINGLE_POINT)
     assert result.code is ResultCode.CANCELLED
-    assert len(result.progress.outcomes) == 1
+    assert len(result.progress.outcomes) == 2  # the second was done when the wish came; nothing is seen after it
+    assert "cancelled" in result.progress.outcomes[1].message
 
 
 def test_a_block_that_vanishes_is_named():
@@ -141,3 +142,15 @@ def test_a_block_that_is_seen_again_is_not_lost():
     result, _ = run(cell)
     assert result.code is ResultCode.OK
     assert "no longer" not in result.message
+
+
+def test_an_executor_that_has_just_joined_gets_another_view():
+    result, _ = run(ScriptedCell(faults=[ResultCode.NOT_READY]))
+    assert result.code is ResultCode.OK
+    assert [outcome.code for outcome in result.progress.outcomes] == [ResultCode.OK] * 3
+
+
+def test_an_executor_that_never_gets_ready_ends_it():
+    result, _ = run(ScriptedCell(faults=[ResultCode.NOT_READY] * 5))
+    assert result.code is ResultCode.PUSH_FAILED
+    assert result.progress.outcomes == []
