@@ -1,6 +1,7 @@
 """What one worker does: plan and simulate the pushes of one scene."""
 
 import time
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -93,7 +94,7 @@ def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
         "single_point" if best else job.contact_mode,
         push_distance=setting.push_distance,
         pusher=setting.pusher,
-        seed=scenario.seed,
+        seed=zlib.crc32(scenario.key.encode()),  # not the scene's own, which other scenes share
         placement=replace(setting.placement, fits=job.fits),  # type: ignore[arg-type]
         best_contact_mode=best,
         physics=setting.physics,
