@@ -6,10 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from singulation_core import ContactMode, Push, PusherGeometry
+from singulation_core.push_world import pusher_footprint
 from singulation_core.transforms import pose_matrix
+from yumi_push_executor import MotionParameters
 from yumi_push_executor.motion.jaws import headings, middle_line, opening, tool_pose
 
 ANGLES = st.floats(-7.0, 7.0)
+FINGER = 0.0062  # m; thickness of one finger along the closing direction, half of the closed pair's
 
 
 def push(mode, angle, width):
@@ -34,18 +37,34 @@ def test_single_point_may_turn_all_around(angle):
 
 @given(st.floats(1e-4, 0.05), ANGLES)
 def test_only_two_points_open_the_jaws(width, angle):
-    assert opening(push(ContactMode.TWO_POINT, angle, width), PusherGeometry()) == width
+    middles = opening(push(ContactMode.TWO_POINT, angle, width), PusherGeometry()) + FINGER
+    assert middles == pytest.approx(max(width, FINGER))
     assert opening(push(ContactMode.SINGLE_POINT, angle, 0.0), PusherGeometry()) == 0.0
     assert opening(push(ContactMode.EDGE, angle, min(width, 0.0124)), PusherGeometry()) == 0.0
 
 
 @given(st.sampled_from(list(ContactMode)), ANGLES)
-def test_the_front_of_the_jaws_is_where_an_edge_push_starts(mode, angle):
-    asked = push(mode, angle, 0.0 if mode is ContactMode.SINGLE_POINT else 0.0124)
-    line, along = middle_line(asked, PusherGeometry()), asked.direction
-    behind = 0.006 if mode is ContactMode.EDGE else 0.0
-    np.testing.assert_allclose(line.start + behind * along, asked.start, atol=1e-12)
+def test_the_jaws_front_is_where_the_push_physics_has_it(mode, angle):
+    asked, pusher = push(mode, angle, 0.0 if mode is ContactMode.SINGLE_POINT else 0.0124), PusherGeometry()
+    line, along = middle_line(asked, pusher), asked.direction
     np.testing.assert_allclose(line.end - line.start, asked.end - asked.start, atol=1e-12)
+    if mode is ContactMode.SINGLE_POINT:
+        np.testing.assert_allclose(line.start, asked.start, atol=1e-12)
+        return
+    footprint = pusher_footprint(asked, pusher)
+    parts = [one.x + one.radius for one in footprint.discs] + [one[:, 0].max() for one in footprint.polygons]
+    np.testing.assert_allclose(line.start + 0.006 * along, asked.start + max(parts) * along, atol=1e-12)
+
+
+@given(st.floats(0.007, 0.05))
+def test_opened_fingers_stay_within_the_clearance_that_the_planner_keeps(width):
+    asked, pusher = push(ContactMode.TWO_POINT, 0.0, width), PusherGeometry()
+    gap, ahead = opening(asked, pusher), float(middle_line(asked, pusher).start[0])
+    for disc in pusher_footprint(asked, pusher).discs:
+        middle = np.sign(disc.y) * 0.5 * (gap + FINGER)
+        corners = [(ahead + x, middle + y) for x in (-0.006, 0.006) for y in (-0.5 * FINGER, 0.5 * FINGER)]
+        reach = max(float(np.hypot(x - disc.x, y - disc.y)) for x, y in corners)
+        assert reach < pusher.tip_radius + pusher.tip_radius / 6.0 - MotionParameters().margins.descent
 
 
 @given(st.tuples(st.floats(-0.2, 0.2), st.floats(-0.2, 0.2)), st.floats(0.0, 0.2), ANGLES, ANGLES)

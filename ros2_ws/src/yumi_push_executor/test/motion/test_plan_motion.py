@@ -67,7 +67,8 @@ def check_push(motion, poses, speed, along):
     assert steady.sum() * STEP >= motion.push.length - 2 * PARAMETERS.push_speed**2 / PARAMETERS.linear_acceleration
     if motion.push.contact_mode is not ContactMode.SINGLE_POINT:
         assert np.abs(poses[:, :3, 0] @ along).max() < 1e-3  # the jaws close across the push
-    wanted = motion.push.contact_width if motion.push.contact_mode is ContactMode.TWO_POINT else 0.0
+    two = motion.push.contact_mode is ContactMode.TWO_POINT
+    wanted = max(motion.push.contact_width - 0.5 * PUSHER.edge_width, 0.0) if two else 0.0
     assert motion.opening == wanted == motion.segment(Phase.GRIPPER).opening
 
 

@@ -36,7 +36,7 @@ def test_on_the_border_is_inside(push_of):
     assert plan_motion(push_of(start=(-0.16, -0.21), end=(-0.16, -0.15))).arm == "right"
 
 
-@pytest.mark.parametrize("mode, width", [(ContactMode.TWO_POINT, 0.0501), (ContactMode.EDGE, 0.013)])
+@pytest.mark.parametrize("mode, width", [(ContactMode.TWO_POINT, 0.0563), (ContactMode.EDGE, 0.013)])
 def test_jaws_too_narrow(refused, push_of, mode, width):
     code, text = refused(push_of(mode, width=width))
     assert code is ResultCode.CONTACT_WIDTH
@@ -44,7 +44,7 @@ def test_jaws_too_narrow(refused, push_of, mode, width):
 
 
 def test_fully_open_jaws_are_fine(push_of):
-    assert plan_motion(push_of(ContactMode.TWO_POINT, width=0.05)).opening == 0.05
+    assert plan_motion(push_of(ContactMode.TWO_POINT, width=0.0562)).opening == pytest.approx(0.05)
 
 
 def test_a_workspace_beyond_the_arms_names_the_arm_and_the_miss(refused, push_of):

@@ -14,6 +14,9 @@ _HEADINGS = 12  # for a single point: every 30 degrees
 def opening(push: Push, pusher: PusherGeometry) -> float:
     """Distance between the jaws during the push [m].
 
+    The contacts of a two-point push are the middles of the fingertips, as the push physics has them: between the jaws
+    there is one finger's thickness less.
+
     Raises:
         SingulationError: ``CONTACT_WIDTH`` if the jaws are not that wide or do not open that far.
     """
@@ -25,21 +28,26 @@ def opening(push: Push, pusher: PusherGeometry) -> float:
         )
     if push.contact_mode is not ContactMode.TWO_POINT:
         return 0.0
-    if not (push.contact_width <= MAX_OPENING + 1e-9):
+    finger = 0.5 * pusher.edge_width
+    if not (push.contact_width <= MAX_OPENING + finger + 1e-9):
         raise SingulationError(
             ResultCode.CONTACT_WIDTH,
-            f"two-point push: contact width {push.contact_width * 1e3:.1f} mm, the jaws open to "
-            f"{MAX_OPENING * 1e3:.0f} mm",
+            f"two-point push: contact width {push.contact_width * 1e3:.1f} mm, the middles of the opened fingers are "
+            f"{(MAX_OPENING + finger) * 1e3:.1f} mm apart at most",
         )
-    return push.contact_width
+    return max(push.contact_width - finger, 0.0)
 
 
 def middle_line(push: Push, pusher: PusherGeometry) -> Push:
-    """The way of the point midway between the tips: P and Q of an edge push are on the jaws' front side."""
-    if push.contact_mode is not ContactMode.EDGE:
-        return push
-    back = 0.5 * pusher.edge_thickness * push.direction
-    return replace(push, start=push.start - back, end=push.end - back)
+    """The way of the point midway between the tips.
+
+    P and Q of an edge push are on the jaws' front side. Those of a two-point push are between two discs, as the planner
+    and the push physics have the fingertips, which are flatter: their front goes where the front of the discs would be.
+    """
+    half = 0.5 * pusher.edge_thickness
+    forward = {ContactMode.EDGE: -half, ContactMode.TWO_POINT: max(pusher.tip_radius - half, 0.0)}
+    shift = forward.get(push.contact_mode, 0.0) * push.direction
+    return replace(push, start=push.start + shift, end=push.end + shift)
 
 
 def headings(push: Push) -> FloatArray:
