@@ -1,39 +1,26 @@
-"""From surfaces to blocks: top faces, their rims, splits, outlines."""
+"""From surfaces to blocks."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from singulation_core import PlanarObject
-from singulation_core.polygon import FloatArray
 from singulation_perception.boundaries import face_maps, rims
-from singulation_perception.face_rings import FaceRings, face_rings
-from singulation_perception.hidden import without_hidden
-from singulation_perception.object_points import ObjectPoints
-from singulation_perception.outlines import outline_of
+from singulation_perception.confidence import FEWEST_TO_COMPARE, FLUSH, UNUSUAL_EXTENT
+from singulation_perception.face_blocks import FaceBlocks
+from singulation_perception.face_rings import face_rings
+from singulation_perception.found_block import FoundBlock
+from singulation_perception.hidden import View
+from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.parameters import SegmentationParameters
-from singulation_perception.rings import Scale
-from singulation_perception.splitting import split
+from singulation_perception.piles import settled
+from singulation_perception.splitting import Suspects
 from singulation_perception.surfaces import Faces, Surfaces, faces_of
 
 _BAND_IN_NOISE, _LEAST_BAND = 4.0, 0.0008
-_TOLERANCE_IN_PITCHES = 4.0
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """The cloud as the camera sees it.
-
-    Args:
-        camera: (3,) its place in ``table`` [m].
-        plane: (4,) of the table in the camera frame.
-        cloud: (H, W, 3), camera frame, to tell hidden from empty; None if the cloud has no image order.
-    """
-
-    camera: FloatArray
-    plane: FloatArray
-    cloud: NDArray[np.float32] | None
+_APART_IN_NOISE = 5.5
+_GROOVE = 0.12  # missing points beyond the usual, in widths of a face, that may be a groove
+_UNEVEN = 1.3  # scatter of heights, in noise, that may be a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,57 +53,60 @@ def blocks_of(
         seen: the object points.
         surfaces: of them.
         parameters: of the segmentation.
-        noise: of the cloud [m].
+        noise: of the heights [m].
         view: of the camera.
     """
     band = max(_BAND_IN_NOISE * noise, _LEAST_BAND)
-    faces = faces_of(seen, surfaces, band, parameters.max_height, parameters.min_size)
-    tall = surfaces.top > parameters.max_height
-    small = (surfaces.count < parameters.min_size) & ~tall
+    faces = faces_of(seen, surfaces, band, _APART_IN_NOISE * noise, parameters.max_height, parameters.min_size)
+    dropped = _dropped(faces, surfaces, parameters)
     right_size = (faces.count >= parameters.min_size) & (faces.count <= parameters.max_size)
-    dropped = {
-        "small": int(surfaces.count[small].sum()),
-        "large": int((faces.count > parameters.max_size).sum()),
-        "tall": int((tall & (surfaces.count >= parameters.min_size)).sum()),
-        "sliver": 0,
-        "shapeless": 0,
-    }
     chosen = np.flatnonzero(right_size).astype(np.int32)
     maps = face_maps(faces, chosen)
     rings = face_rings(seen.xyz, *rims(maps), faces.count[chosen], noise, view.camera)
-    found = Blocks([], [], surfaces, dropped)
-    for k, face in enumerate(chosen):
-        _add(found, faces, int(face), rings, k, parameters, view)
-    return found
-
-
-def _add(
-    found: Blocks,
-    faces: Faces,
-    face: int,
-    rings: FaceRings,
-    k: int,
-    parameters: SegmentationParameters,
-    view: View,
-) -> None:
-    """Adds the blocks of one face."""
-    pitch = float(rings.pitch[k])
-    scale = Scale(pitch, parameters.edge_growth * pitch, float(rings.roughness[k]))
-    if rings.width[k] + 2.0 * scale.growth < parameters.min_width or rings.thickness[k] < 0.5 * parameters.min_width:
-        found.dropped["sliver"] += 1
-        return
-    ring = rings.ring(k)
-    concave = bool(rings.concave[k] > 0.0)
-    if concave and view.cloud is not None:
-        pixels = rings.pixels[rings.begin[k] : rings.begin[k + 1]]
-        ring, _ = without_hidden(ring, pixels, scale.roughness, view.cloud, view.plane, float(faces.height[face]))
-    pieces = split(ring, scale).pieces if concave and parameters.split_touching else (ring,)
-    tolerance = parameters.outline_tolerance or max(_TOLERANCE_IN_PITCHES * pitch, scale.roughness)
-    for piece in pieces:
-        outline = outline_of(piece, tolerance, scale)
-        if outline is None:
-            found.dropped["shapeless"] += 1
+    every = FaceBlocks(seen, faces, maps, rings, view, parameters, noise)
+    found: list[FoundBlock] = []
+    for k, suspects in enumerate(_suspects(faces, chosen, noise)):
+        if every.is_sliver(k):
+            dropped["sliver"] += 1
             continue
-        item = PlanarObject(len(found.objects), outline, float(faces.height[face]), int(faces.count[face]))
-        found.objects.append(item)
-        found.surface.append(int(faces.surface[face]))
+        blocks = every.blocks(k, suspects)
+        dropped["shapeless"] += not blocks
+        found += blocks
+    found, dropped["stacked"] = settled(_with_size_doubts(found, parameters.max_extent), band)
+    objects = [
+        PlanarObject(i, one.outline, one.height, one.count, min(1.0, one.confidence)) for i, one in enumerate(found)
+    ]
+    return Blocks(objects, [one.surface for one in found], surfaces, dropped)
+
+
+def _dropped(faces: Faces, surfaces: Surfaces, parameters: SegmentationParameters) -> dict[str, int]:
+    tall = surfaces.top > parameters.max_height
+    enough = surfaces.count >= parameters.min_size
+    return {
+        "small": int(surfaces.count[~enough & ~tall].sum()),
+        "large": int(np.count_nonzero(faces.count > parameters.max_size)),
+        "tall": int(np.count_nonzero(tall & enough)),
+        "sliver": 0,
+        "shapeless": 0,
+    }
+
+
+def _suspects(faces: Faces, chosen: IntArray, noise: float) -> list[Suspects]:
+    """Faces that miss more points, or scatter more, than the others."""
+    count, holes = faces.count[chosen], faces.holes[chosen]
+    usual = np.median(holes / np.maximum(count, 1)) * count if len(chosen) else count
+    grooved = holes - usual - 3.0 * np.sqrt(usual) > _GROOVE * np.sqrt(count)
+    uneven = faces.scatter[chosen] > _UNEVEN * noise
+    return [Suspects(bool(groove), bool(step), noise) for groove, step in zip(grooved, uneven, strict=True)]
+
+
+def _with_size_doubts(blocks: list[FoundBlock], max_extent: float | None) -> list[FoundBlock]:
+    """Doubts blocks that are so large that they may be several, flush along a whole edge."""
+    extents = [2.0 * block.radius for block in blocks]
+    if max_extent is None and len(blocks) >= FEWEST_TO_COMPARE:
+        max_extent = UNUSUAL_EXTENT * float(np.median(extents))
+    if max_extent is None:
+        return blocks
+    return [
+        block.doubted(FLUSH) if extent > max_extent else block for block, extent in zip(blocks, extents, strict=True)
+    ]

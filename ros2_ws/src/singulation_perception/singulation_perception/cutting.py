@@ -67,8 +67,8 @@ def piece(
 ) -> FloatArray:
     """The part of a ring from point ``first`` to point ``last``, closed along the seam.
 
-    Points across the seam near its ends are left out. The points on the seam lie by the growth inside the piece, like the
-    points of a rim lie inside the edge, so that outlines grow back to the seam.
+    Points across the seam near its ends are left out. The points on the seam lie by the growth inside the piece, like
+    the points of a rim lie inside the edge, so that outlines grow back to the seam.
 
     Args:
         line: point and direction of the seam.
@@ -112,35 +112,124 @@ def concave_cost(ring: FloatArray, roughness: float) -> float:
 
 
 @njit(cache=True)
-def judged(
+def estimated(
     ring: FloatArray,
     cuts: FloatArray,
     index: IntArray,
-    lines: FloatArray,
-    fitted: IntArray,
     scale: Scale,
     base: float,
     per_length: float,
     thin: float,
     thin_width: float,
 ) -> FloatArray:
-    """(c, 2): the cost of each cut alone, and with what remains concave; infinite for cuts that leave no two pieces."""
-    costs = np.empty((len(cuts), 2))
+    """(c, 3): what the seam, what thin pieces, and what both and the remaining concave parts cost.
+
+    Judged from the corners of the ring only.
+    The last is infinite for cuts that leave no two pieces.
+    """
+    costs = np.empty((len(cuts), 3))
     for k in range(len(cuts)):
-        costs[k, 0], costs[k, 1] = np.inf, np.inf
-        i, j = int(cuts[k, 0]), int(cuts[k, 1])
-        if i == j:
-            continue
-        line = seam_line(ring, cuts[k], index, lines, fitted, scale)
+        costs[k, 0], costs[k, 1], costs[k, 2] = 0.0, 0.0, np.inf
+        i, j = np.int64(cuts[k, 0]), np.int64(cuts[k, 1])
         width, left = np.inf, 0.0
-        for part in both_pieces(ring, i, j, line, scale):
-            if len(part) < _FEWEST or ring_area(part) < _SMALLEST * scale.pitch**2:
+        for first, last in ((i, j), (j, i)):
+            part = _corner_piece(ring, index, first, last)
+            if len(part) < 3 or ring_area(part) < _SMALLEST * scale.pitch**2:
                 width = -1.0
                 break
             hull = hull_indices(part)
             width = min(width, least_width(part, hull))
-            left += concave_area(part, hull, scale.roughness) * _PER_AREA
+            left += _corner_pockets(part, hull, scale.roughness) * _PER_AREA
         if width >= 0.0:
-            costs[k, 0] = base + per_length * cuts[k, 2] + cuts[k, 3] + thin * max(0.0, 1.0 - width / thin_width)
-            costs[k, 1] = costs[k, 0] + left
+            costs[k, 0] = base + per_length * cuts[k, 2] + cuts[k, 3]
+            costs[k, 1] = thin * max(0.0, 1.0 - width / thin_width)
+            costs[k, 2] = costs[k, 0] + costs[k, 1] + left
     return costs
+
+
+@njit(cache=True)
+def _corner_piece(ring: FloatArray, index: IntArray, first: int, last: int) -> FloatArray:
+    """Corners of a ring from one point to another, both included."""
+    size = len(ring)
+    span = (last - first) % size
+    start, nearest = 0, size
+    for k in range(len(index)):
+        ahead = (index[k] - first) % size
+        if 0 < ahead < nearest:
+            start, nearest = k, ahead
+    part = np.empty((len(index) + 2, 2))
+    part[0, 0], part[0, 1] = ring[first, 0], ring[first, 1]
+    count = 1
+    for k in range(len(index)):
+        point = np.int64(index[(start + k) % len(index)])
+        if (point - first) % size >= span or point == first:
+            break
+        part[count, 0], part[count, 1] = ring[point, 0], ring[point, 1]
+        count += 1
+    part[count, 0], part[count, 1] = ring[last, 0], ring[last, 1]
+    return part[: count + 1]
+
+
+@njit(cache=True)
+def _corner_pockets(part: FloatArray, hull: IntArray, roughness: float) -> float:
+    """As ``concave_area``, for a polygon of few corners."""
+    total = 0.0
+    for k in range(len(hull)):
+        first, last = hull[k], hull[k + 1 if k + 1 < len(hull) else 0]
+        x, y = part[last, 0] - part[first, 0], part[last, 1] - part[first, 1]
+        length = np.sqrt(x * x + y * y)
+        area, depth, bx, by = 0.0, 0.0, 0.0, 0.0
+        for step in range(1, (last - first) % len(part) + 1):
+            i = (first + step) % len(part)
+            px, py = part[i, 0] - part[first, 0], part[i, 1] - part[first, 1]
+            area += 0.5 * (bx * py - px * by)
+            bx, by = px, py
+            depth = max(depth, (x * py - y * px) / max(length, 1e-12))
+        if depth > roughness:
+            total += abs(area)
+    return total
+
+
+@njit(cache=True)
+def left_concave(first: FloatArray, second: FloatArray, scale: Scale) -> float:
+    """What remains concave in two pieces [m]; infinite if one of them is too small to be a block."""
+    left = 0.0
+    for part in (first, second):
+        if len(part) < _FEWEST or ring_area(part) < _SMALLEST * scale.pitch**2:
+            return np.inf
+        left += concave_cost(part, scale.roughness)
+    return left
+
+
+@njit(cache=True)
+def chord(ring: FloatArray, nx: float, ny: float, offset: float) -> tuple[int, int]:
+    """Points of the ring at the ends of the longest piece of the line n . p = offset inside it; -1, -1 if outside.
+
+    The first of the two lies where the direction (-ny, nx) comes from.
+    """
+    crossings = np.empty(len(ring))
+    places = np.empty(len(ring), dtype=np.int64)
+    count = 0
+    for i in range(len(ring)):
+        a = nx * ring[i - 1, 0] + ny * ring[i - 1, 1] - offset
+        b = nx * ring[i, 0] + ny * ring[i, 1] - offset
+        if (a > 0.0) != (b > 0.0):
+            t = nx * ring[i, 1] - ny * ring[i, 0]
+            at = count
+            while at > 0 and crossings[at - 1] > t:
+                crossings[at], places[at] = crossings[at - 1], places[at - 1]
+                at -= 1
+            crossings[at], places[at] = t, i
+            count += 1
+    best, first, last = 0.0, -1, -1
+    for k in range(0, count - 1, 2):
+        if crossings[k + 1] - crossings[k] > best:
+            best, first, last = crossings[k + 1] - crossings[k], places[k], places[k + 1]
+    return first, last
+
+
+@njit(cache=True)
+def along(ring: FloatArray, i: int, j: int, nx: float, ny: float, offset: float) -> tuple[float, float, float, float]:
+    """Point and unit direction, from point i to point j, of the line n . p = offset."""
+    sense = 1.0 if (ring[j, 1] - ring[i, 1]) * nx - (ring[j, 0] - ring[i, 0]) * ny > 0.0 else -1.0
+    return nx * offset, ny * offset, -ny * sense, nx * sense

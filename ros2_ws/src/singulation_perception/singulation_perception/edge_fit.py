@@ -2,15 +2,16 @@
 
 The sensor loses points at an edge, so the points of a rim scatter between the edge and about two point spacings inside
 it. The mean of that scatter depends on how much is lost; its outer limit hardly does. Lines are therefore fitted by
-asymmetric least squares (expectiles; Newey and Powell 1987): points outside the line weigh nine times as much as points
-inside. Measured on ray-cast blocks at half loss, an edge's position then scatters 0.14 spacings instead of 0.24 for plain
-least squares, and moves by 0.2 spacings instead of 0.4 when the loss at edges goes from none to one half.
+asymmetric least squares (expectiles; Newey and Powell 1987): points outside the line weigh nine times as much as
+points inside. Measured on ray-cast blocks at half loss, an edge's position then scatters 0.14 spacings instead of 0.24
+for plain least squares, and moves by 0.2 spacings instead of 0.4 when the loss at edges goes from none to one half.
 """
 
 import numpy as np
 from numba import njit
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.object_points import IntArray
 
 _INSIDE_WEIGHT = 0.1
 _ROUNDS = 8
@@ -119,7 +120,7 @@ def refitted(ring: FloatArray, polygon: FloatArray, reach: float, margin: float)
 
 
 @njit(cache=True)
-def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> FloatArray:
+def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> IntArray:
     edge = np.empty(len(ring), dtype=np.int32)
     for i in range(len(ring)):
         best, nearest = -1, reach

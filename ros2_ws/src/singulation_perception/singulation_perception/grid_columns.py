@@ -191,9 +191,9 @@ def _link_within(
     level = depth[first[a]]
     for b in range(begin, end):
         apart = depth[first[b]] - level
-        if -_PAD <= apart <= _PAD and find_root(parent, a) != find_root(parent, b):
-            if _touch(points, first[a], first[a + 1], first[b], first[b + 1], squared):
-                unite(parent, a, b)
+        near = -_PAD <= apart <= _PAD and find_root(parent, a) != find_root(parent, b)
+        if near and _touch(points, first[a], first[a + 1], first[b], first[b + 1], squared):
+            unite(parent, a, b)
 
 
 @njit(cache=True)

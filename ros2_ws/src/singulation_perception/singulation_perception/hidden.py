@@ -1,5 +1,6 @@
 """Parts of a face that the camera cannot see because something taller stands in the way."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -10,50 +11,68 @@ from numpy.typing import NDArray
 from singulation_core.polygon import FloatArray
 from singulation_perception.cloud_sample import ANY_CLOUD
 from singulation_perception.object_points import IntArray
-from singulation_perception.rings import hull_indices, pockets
+from singulation_perception.rings import hull_indices, pocket_depths
 
+_COVERED = 0.5  # share of a pocket filled by something taller that may lie on the block
 _SEEN_LOWER = 0.3  # share of a pocket that is seen to be lower, from which on it is empty
 _TALLER = 0.03  # share of taller points around a pocket that can have hidden it
 _AROUND = 6  # pixels
+_SHADOW = 0.35  # tangent of the projector's view beside the camera's: 0.23 m of baseline at 0.65 m and more
 
 
-def without_hidden(
-    ring: FloatArray, pixels: IntArray, roughness: float, cloud: NDArray[np.float32], plane: FloatArray, height: float
-) -> tuple[FloatArray, float]:
+@dataclass(frozen=True, eq=False)
+class View:
+    """The cloud as the camera sees it.
+
+    Args:
+        camera: (3,) its place in ``table`` [m].
+        plane: (4,) of the table in the camera frame.
+        cloud: (H, W, 3), camera frame, to tell hidden from empty; None if the cloud has no image order.
+    """
+
+    camera: FloatArray
+    plane: FloatArray
+    cloud: NDArray[np.float32] | None
+
+
+def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: View, height: float) -> FloatArray:
     """Bridges the pockets of a ring that are hidden rather than empty.
 
-    A pocket counts as hidden if less than 30 % of it is seen to be lower than the face and something taller is near.
+    A pocket counts as hidden if less than 30 % of it is seen to be lower than the face, something taller is near, and
+    that is tall enough to hide, from the camera or the projector, as much as is missing, or covers half of it.
 
     Args:
         ring: (m, 2) rim of a face [m].
-        pixels: (m, 2) rows and columns of its points.
+        pixels: (m, 2) rows and columns of its points in the cloud.
         roughness: of the rim [m].
-        cloud: (H, W, 3), camera frame.
-        plane: (4,) of the table in the camera frame.
+        view: of the camera.
         height: of the face [m].
 
     Returns:
-        The ring without the hidden pockets, and the length of what was bridged [m].
+        The ring without the hidden pockets.
     """
-    hull = hull_indices(ring)
+    if view.cloud is None:
+        return ring
     keep = np.ones(len(ring), dtype=bool)
-    bridged = 0.0
-    for first, last in pockets(ring, hull, roughness):
-        around = np.arange(first, last + 1) % len(ring)
-        lower, taller, inside, near = _compiled()(
-            cloud, plane.astype(np.float32), np.ascontiguousarray(pixels[around]),
-            np.float32(height - roughness), np.float32(height + roughness), _AROUND,
-        )  # fmt: skip
-        if lower < _SEEN_LOWER * inside and taller > _TALLER * near:
+    way = view.camera[:2] - ring[0]
+    reach = float(np.hypot(*way)) / max(abs(float(view.camera[2]) - height), 1e-3) + _SHADOW
+    plane = view.plane.astype(np.float32)
+    for first, last, depth in pocket_depths(ring, hull_indices(ring), roughness):
+        around = np.arange(int(first), int(last) + 1) % len(ring)
+        pocket = np.ascontiguousarray(pixels[around])
+        low, high = np.float32(height - roughness), np.float32(height + roughness)
+        lower, covered, taller, inside, near, level = _compiled()(view.cloud, plane, pocket, low, high, _AROUND)
+        hidden = lower < _SEEN_LOWER * inside and taller > _TALLER * near
+        tall_enough = depth < reach * (level - height) + 2.0 * roughness
+        if hidden and (tall_enough or covered > _COVERED * inside):
             keep[around[1:-1]] = False
-            bridged += float(np.hypot(*(ring[around[-1]] - ring[around[0]])))
-    return ring[keep], bridged
+    return np.asarray(ring[keep])
 
 
 @lru_cache(maxsize=1)
 def _compiled() -> Any:
     return njit(
-        types.UniTuple(types.int64, 4)(
+        types.Tuple((*[types.int64] * 5, types.float64))(
             ANY_CLOUD, types.float32[::1], types.int32[:, ::1], types.float32, types.float32, types.int64
         ),
         cache=True,
@@ -67,24 +86,26 @@ def _look(
     low: np.float32,
     high: np.float32,
     around: int,
-) -> tuple[int, int, int, int]:
-    """Points seen lower inside a pocket, taller in and around it, and pixels inside and around."""
+) -> tuple[int, int, int, int, int, float]:
+    """Points lower inside a pocket, taller inside, taller in and around it, pixels inside and around; mean height of
+    the taller.
+    """
     top, left, bottom, right = cloud.shape[0], cloud.shape[1], 0, 0
     for i in range(len(pocket)):
         top, bottom = min(top, pocket[i, 0]), max(bottom, pocket[i, 0] + 1)
         left, right = min(left, pocket[i, 1]), max(right, pocket[i, 1] + 1)
     top, bottom = max(0, top - around), min(cloud.shape[0], bottom + around)
     left, right = max(0, left - around), min(cloud.shape[1], right + around)
-    inside_row = np.empty(right - left, dtype=np.int32)
-    lower, taller, inside = 0, 0, 0
+    inside_row = np.empty(right - left + 1, dtype=np.int32)
+    lower, covered, taller, inside, total = 0, 0, 0, 0, 0.0
     for row in range(top, bottom):
-        for column in range(right - left):
+        for column in range(right - left + 1):
             inside_row[column] = 0
         for i in range(len(pocket)):  # the row is inside between crossings: parity, summed from the left
             r, q = pocket[i, 0], pocket[i - 1, 0]
             if (r > row) != (q > row):
                 crossing = pocket[i, 1] + (row - r) * (pocket[i - 1, 1] - pocket[i, 1]) / (q - r)
-                inside_row[int(np.ceil(crossing)) - left] ^= 1
+                inside_row[max(0, min(right, int(np.ceil(crossing))) - left)] ^= 1
         within = 0
         for column in range(left, right):
             within ^= inside_row[column - left]
@@ -92,6 +113,9 @@ def _look(
             a, b, c = cloud[row, column, 0], cloud[row, column, 1], cloud[row, column, 2]
             level = a * plane[0] + b * plane[1] + c * plane[2] + plane[3]
             if np.isfinite(level) and not (a == 0.0 and b == 0.0 and c == 0.0):
-                taller += level > high
+                if level > high:
+                    taller += 1
+                    covered += within
+                    total += level
                 lower += within == 1 and level < low
-    return lower, taller, inside, (bottom - top) * (right - left)
+    return lower, covered, taller, inside, (bottom - top) * (right - left), total / max(taller, 1)

@@ -9,8 +9,10 @@ from singulation_perception.object_points import FIRST, START, STOP, IntArray
 Points = NDArray[np.float32]
 
 _MOST = 12  # levels of one surface
-_BINS = 8  # of the histogram to one face's range of heights
-_PROMINENCE = 2.5  # a wall is as dense beside the range as in it, its end half as dense
+_BINS = 8  # of the histogram in the window of a peak, which is half as wide as the range of a face
+_MASK = 6  # bins on either side of a peak in which there is no other
+_PROMINENCE = 2.5  # a wall is as dense on both sides of a window as in it
+_TAIL, _TAIL_REACH = 0.04, 32  # share of a peak that its own tails can hold, and bins up to which they count
 
 
 @njit(cache=True)
@@ -21,6 +23,7 @@ def levels_of(
     sizes: IntArray,
     wanted: NDArray[np.bool_],
     band: float,
+    apart: float,
     highest: float,
     min_size: int,
 ) -> tuple[IntArray, NDArray[np.float64]]:
@@ -33,18 +36,19 @@ def levels_of(
         sizes: (s,) points of each surface.
         wanted: (s,) which surfaces to look at.
         band: half the height range of a face [m].
+        apart: levels closer than this cannot be told apart point by point and become one [m].
         highest: of all wanted points [m].
         min_size: fewest points of a level.
 
     Returns:
-        first level of each surface (s + 1,) and the heights of all levels; a wanted surface without a flat part has
-        the one level infinity, which takes all its points.
+        first level of each surface (s + 1,) and the lower and upper limit of all levels (l, 2); a wanted surface
+        without a flat part has one level without limits.
     """
     order, begin = _runs_by_surface(surface, len(sizes))
-    width = 2.0 * band / _BINS
+    width = band / _BINS
     histogram = np.zeros(int(highest / width) + 2, dtype=np.int32)
     first = np.zeros(len(sizes) + 1, dtype=np.int32)
-    levels = np.empty(_MOST * len(sizes) + 1, dtype=np.float64)
+    levels = np.empty((_MOST * len(sizes) + 1, 2), dtype=np.float64)
     count = 0
     for one in range(len(sizes)):
         if wanted[one]:
@@ -54,7 +58,8 @@ def levels_of(
                 run = order[k]
                 for i in range(runs[run, FIRST], runs[run, FIRST] + runs[run, STOP] - runs[run, START]):
                     histogram[int(xyz[i, 2] / width)] += 1
-            count += _peaks(histogram, width, min_size, levels[count : count + _MOST])
+            found = levels[count : count + _MOST]
+            count += _limits(found, _peaks(histogram, width, min_size, found), band, apart)
         first[one + 1] = count
     return first, levels[:count]
 
@@ -76,29 +81,71 @@ def _runs_by_surface(surface: IntArray, count: int) -> tuple[IntArray, IntArray]
 
 @njit(cache=True)
 def _peaks(histogram: IntArray, width: float, min_size: int, levels: NDArray[np.float64]) -> int:
-    """Writes the levels of a histogram, empties it on the way, and says how many there are."""
-    half = _BINS // 2
+    """Writes the heights of the levels of a histogram and says how many there are."""
+    free = np.empty(len(histogram), dtype=np.int32)  # 0 near a peak that was looked at
+    for i in range(len(histogram)):
+        free[i] = 1
+    at, size = np.empty(len(levels), dtype=np.int32), np.empty(len(levels), dtype=np.int32)
     count = 0
     while count < len(levels):
-        best, middle, window = 0, -1, 0
-        for i in range(len(histogram) + half):
-            window += histogram[i] if i < len(histogram) else 0
-            window -= histogram[i - _BINS] if i >= _BINS else 0
-            if window > best:
-                best, middle = window, i - half
+        best, low = _fullest(histogram, free)
         if best < min_size:
             break
-        low, high = max(0, middle - half + 1), min(len(histogram), middle + half + 1)
-        beside = _sum(histogram, low - _BINS, low) + _sum(histogram, high, high + _BINS)
-        if 2 * best >= _PROMINENCE * beside:
-            levels[count] = _mean(histogram, low, high, width)
+        high = low + _BINS
+        beside = min(_sum(histogram, low - _BINS, low), _sum(histogram, high, high + _BINS))
+        tail = False
+        for k in range(count):
+            tail = tail or (abs(at[k] - low) < _TAIL_REACH and best < _TAIL * size[k])
+        if best >= _PROMINENCE * beside and not tail:
+            levels[count, 0] = _mean(histogram, free, low, high, width)
+            at[count], size[count] = low, best
             count += 1
-        for i in range(max(0, low - half // 2), min(len(histogram), high + half // 2)):
-            histogram[i] = 0
-    if count == 0:
-        levels[0] = np.inf
-        count = 1
+        middle = low + _BINS // 2
+        for i in range(max(0, middle - _MASK), min(len(histogram), middle + _MASK)):
+            free[i] = 0
     return count
+
+
+@njit(cache=True)
+def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) -> int:
+    """Turns heights into limits: sorted, near ones joined, half way between others that would overlap."""
+    if count == 0:
+        levels[0, 0], levels[0, 1] = -np.inf, np.inf
+        return 1
+    for k in range(1, count):
+        at, height = k, levels[k, 0]
+        while at > 0 and levels[at - 1, 0] > height:
+            levels[at, 0] = levels[at - 1, 0]
+            at -= 1
+        levels[at, 0] = height
+    kept, previous = 0, 0.0
+    for k in range(count):
+        height = levels[k, 0]
+        if k > 0 and height - previous < apart:
+            levels[kept - 1, 1] = height + band
+        else:
+            low = height - band
+            if kept > 0 and low < levels[kept - 1, 1]:
+                low = 0.5 * (previous + height)
+                levels[kept - 1, 1] = low
+            levels[kept, 0], levels[kept, 1] = low, height + band
+            kept += 1
+        previous = height
+    return kept
+
+
+@njit(cache=True)
+def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
+    """Most points in a window, those near earlier peaks left out, and the first bin of that window."""
+    best, low, window = 0, 0, 0
+    for i in range(len(histogram) + _BINS):
+        if i < len(histogram):
+            window += histogram[i] * free[i]
+        if i >= _BINS:
+            window -= histogram[i - _BINS] * free[i - _BINS]
+        if window > best:
+            best, low = window, i - _BINS + 1
+    return best, low
 
 
 @njit(cache=True)
@@ -110,22 +157,18 @@ def _sum(histogram: IntArray, low: int, high: int) -> int:
 
 
 @njit(cache=True)
-def _mean(histogram: IntArray, low: int, high: int, width: float) -> float:
+def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float) -> float:
     total, weighted = 0, 0.0
-    for i in range(low, high):
-        total += histogram[i]
-        weighted += histogram[i] * (i + 0.5)
+    for i in range(max(0, low), min(len(histogram), high)):
+        total += histogram[i] * free[i]
+        weighted += histogram[i] * free[i] * (i + 0.5)
     return weighted * width / total
 
 
 @njit(cache=True)
-def nearest_level(levels: NDArray[np.float64], begin: int, end: int, height: float, band: float) -> int:
-    """The level within ``band`` of a height, -1 if there is none; an infinite level takes everything."""
-    best, nearest = -1, band
+def level_at(levels: NDArray[np.float64], begin: int, end: int, height: float) -> int:
+    """The level that a height belongs to, -1 if there is none."""
     for level in range(begin, end):
-        if levels[level] == np.inf:
+        if levels[level, 0] <= height <= levels[level, 1]:
             return level
-        distance = abs(levels[level] - height)
-        if distance <= nearest:
-            best, nearest = level, distance
-    return best
+    return -1

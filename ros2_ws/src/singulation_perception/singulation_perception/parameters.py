@@ -25,6 +25,8 @@ class SegmentationParameters:
         min_height: lowest top face above the table; raised to six times the noise of the table if that is more.
         max_height: highest top face; what reaches above (an arm) is dropped and counted.
         min_width: narrower objects are slivers, dropped and counted.
+        max_extent: diameter of the bounding circle of the largest block there is; larger outlines are doubted, because
+            blocks flush along a whole edge leave no trace. None: one and a half times the median of the cloud.
         outline_tolerance: of Douglas-Peucker. None: four point spacings.
         edge_growth: what the sensor loses at an edge, in point spacings, added on every side of an outline.
             A constant of the sensor; calibrate it with a block of known size.
@@ -47,6 +49,7 @@ class SegmentationParameters:
     min_height: float = 0.004
     max_height: float = 0.10
     min_width: float = 0.006
+    max_extent: float | None = None
     outline_tolerance: float | None = None
     edge_growth: float = 0.5
     height_step: float | None = None
@@ -61,7 +64,7 @@ class SegmentationParameters:
             object.__setattr__(self, "table_from_camera", _pose(self.table_from_camera))
         if self.workspace is not None:
             object.__setattr__(self, "workspace", _workspace(self.workspace))
-        for name in ("tolerance", "outline_tolerance", "height_step"):
+        for name in ("tolerance", "max_extent", "outline_tolerance", "height_step"):
             value = getattr(self, name)
             if value is not None and not (0.0 < value < math.inf):
                 raise InvalidInputError(f"{name}: {value} m, need a finite positive length or none")
@@ -96,7 +99,7 @@ def _workspace(value: ArrayLike) -> tuple[float, float, float, float]:
     limits = np.asarray(value, dtype=np.float64)
     if limits.shape != (4,) or not np.isfinite(limits).all() or not (limits[0] < limits[1] and limits[2] < limits[3]):
         raise InvalidInputError(
-            f"workspace: {value}, need finite x_min < x_max, y_min < y_max in the frame of the table [m]"
+            f"workspace: {value!r}, need finite x_min < x_max, y_min < y_max in the frame of the table [m]"
         )
     x_min, x_max, y_min, y_max = (float(limit) for limit in limits)
     return x_min, x_max, y_min, y_max

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray, inward_half_planes
 from singulation_perception.block_search import Blocks
+from singulation_perception.found_block import deepest
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
 
 
@@ -13,7 +14,7 @@ def labels_in_image(shape: tuple[int, ...], seen: ObjectPoints, blocks: Blocks) 
     """(H, W) ids, -1 for none.
 
     A point belongs to the block of its surface (walls included) whose outline is nearest to it in the plane of the
-    table, of equally near ones (inside both) to the highest.
+    table.
     """
     labels = np.full(shape, -1, dtype=np.int32)
     objects = sorted(blocks.objects, key=lambda item: blocks.surface[item.id])
@@ -40,16 +41,10 @@ def _paint(
     planes: FloatArray,
 ) -> None:
     for run in range(len(runs)):
-        begin, end = first_object[surface[run]], first_object[surface[run] + 1]
+        begin, end = np.int64(first_object[surface[run]]), np.int64(first_object[surface[run] + 1])
         if begin == end:
             continue
         for column in range(runs[run, START], runs[run, STOP]):
             point = xyz[runs[run, FIRST] + column - runs[run, START]]
-            best, depth = begin, -np.inf
-            for one in range(begin, end):
-                inside = np.inf
-                for k in range(first_plane[one], first_plane[one + 1]):
-                    inside = min(inside, planes[k, 0] * point[0] + planes[k, 1] * point[1] - planes[k, 2])
-                if inside > depth:
-                    best, depth = one, inside
+            best = deepest(planes, first_plane, begin, end, np.float64(point[0]), np.float64(point[1]))
             labels[runs[run, ROW], column] = ids[best]

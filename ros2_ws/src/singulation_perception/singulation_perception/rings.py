@@ -1,4 +1,5 @@
-"""Closed boundaries as compiled code sees them: (m, 2) points in order, counter-clockwise, the last joined to the first.
+"""Closed boundaries as compiled code sees them: (m, 2) points in order, counter-clockwise, the last joined to the
+first.
 
 Lengths are in metres. ``roughness`` is the depth up to which a rim counts as straight: lost points make it up to two
 point spacings rough, noise along an oblique line of sight some more.
@@ -106,6 +107,17 @@ def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     for first, last in pockets(ring, hull, roughness):
         total += _pocket(ring, np.int64(first), np.int64(last))[0]
     return total
+
+
+@njit(cache=True)
+def pocket_depths(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
+    """(p, 3) pockets as from ``pockets``, and how deep each is [m]."""
+    found = pockets(ring, hull, roughness)
+    deep = np.empty((len(found), 3))
+    for k in range(len(found)):
+        first, last = np.int64(found[k, 0]), np.int64(found[k, 1])
+        deep[k, 0], deep[k, 1], deep[k, 2] = first, last, _pocket(ring, first, last)[1]
+    return deep
 
 
 @njit(cache=True)

@@ -135,32 +135,31 @@ def candidates(
             if hit < 0:
                 continue
             end, other, sine = _end(ring, index, lines, turn, k, edge, sense, reach, hit, pitch)
-            if end < 0:
-                found[size] = (float(index[k]), float(hit), reach, open_end, float(edge), -1.0)
-            else:
-                x, y = ring[index[end], 0] - ring[index[k], 0], ring[index[end], 1] - ring[index[k], 1]
-                reach = np.sqrt(x * x + y * y)
-                if turn[end] < _REFLEX:
-                    other = other if sine < _ALIGNED else -1
-                    found[size] = (
-                        float(index[k]),
-                        float(index[end]),
-                        reach,
-                        bend * min(sine, 0.3),
-                        float(edge),
-                        float(other),
-                    )
-                else:
-                    found[size] = (float(index[k]), float(index[end]), reach, corner_end, float(edge), -1.0)
+            penalty = open_end
+            if end >= 0:
+                hit = np.int64(index[end])
+                reach = _distance(ring, index[k], hit)
+                penalty = bend * min(sine, 0.3) if turn[end] < _REFLEX else corner_end
+            aligned = end >= 0 and turn[end] < _REFLEX and sine < _ALIGNED
+            _write(found[size], index[k], hit, reach, penalty, edge, other if aligned else -1)
             size += 1
         for other in range(k + 1, count):
-            if turn[other] < _REFLEX:
-                x, y = ring[index[other], 0] - ring[index[k], 0], ring[index[other], 1] - ring[index[k], 1]
-                across = np.sqrt(x * x + y * y)
-                if across < _NECK * pitch and _apart(np.int64(index[k]), np.int64(index[other]), len(ring)) > _NEAR:
-                    found[size] = (float(index[k]), float(index[other]), across, neck, -1.0, -1.0)
-                    size += 1
+            across = _distance(ring, index[k], np.int64(index[other]))
+            apart = _apart(np.int64(index[k]), np.int64(index[other]), len(ring))
+            if turn[other] < _REFLEX and across < _NECK * pitch and apart > _NEAR:
+                _write(found[size], index[k], np.int64(index[other]), across, neck, -1, -1)
+                size += 1
     return found[:size]
+
+
+@njit(cache=True)
+def _write(row: FloatArray, first: int, last: int, length: float, penalty: float, edge: int, other: int) -> None:
+    row[0], row[1], row[2], row[3], row[4], row[5] = first, last, length, penalty, edge, other
+
+
+@njit(cache=True)
+def _distance(ring: FloatArray, a: int, b: int) -> float:
+    return np.sqrt((ring[a, 0] - ring[b, 0]) ** 2 + (ring[a, 1] - ring[b, 1]) ** 2)
 
 
 @njit(cache=True)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core import Arrangement, InvalidInputError, ResultCode, SingulationError
-from singulation_perception.block_search import Blocks, View, blocks_of
+from singulation_perception.block_search import Blocks, blocks_of
 from singulation_perception.flat_clouds import FlatCloud, flat_cloud
+from singulation_perception.hidden import View
 from singulation_perception.object_points import ObjectPoints, object_points
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.point_labels import labels_in_image

@@ -5,15 +5,46 @@ from dataclasses import dataclass
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.cutting import both_pieces, concave_cost, judged, seam_line
+from singulation_perception.creases import groove_line, step_line
+from singulation_perception.cutting import (
+    along,
+    both_pieces,
+    chord,
+    concave_cost,
+    estimated,
+    left_concave,
+    seam_line,
+)
+from singulation_perception.face_image import FaceImage
 from singulation_perception.outlines import simplified
 from singulation_perception.rings import Scale
 from singulation_perception.seams import SeamCosts, candidates, corner_tolerance, corners_of_ring
+from singulation_perception.traces import trace_strength
 
 _COSTS = SeamCosts()
-_DEEPEST = 4  # cuts after one another
-_BRANCHES = 5  # cuts looked at closely
-_CONVEX = 0.005  # [m] cost of a ring that is left alone
+_BRANCHES = (3, 2, 2, 1)  # cuts that are followed up, by depth
+CONVEX = 0.005  # [m] cost of a ring that is left alone
+
+
+_PROOF = 0.6  # strength of a trace that is cut whatever the outline says
+_SEEN = 0.8  # share of a cut's cost that a trace beyond doubt saves
+
+_Cut = tuple[float, FloatArray, tuple[FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True)
+class Suspects:
+    """What to look for inside a face.
+
+    Args:
+        groove: more points are missing than usual.
+        step: heights scatter more than usual.
+        noise: usual scatter [m].
+    """
+
+    groove: bool
+    step: bool
+    noise: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,51 +64,80 @@ class Split:
     rivals: tuple[float, ...] = ()
 
 
-def split(ring: FloatArray, scale: Scale, depth: int = _DEEPEST) -> Split:
+def split(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, depth: int = 0) -> Split:
     """Branch and bound over the cuts that the outline suggests.
 
     Args:
         ring: (m, 2) rim of a face, counter-clockwise [m].
         scale: of the cloud.
-        depth: most cuts after one another.
+        image: the face.
+        noise: of the heights [m].
+        depth: cuts that led to this ring.
     """
     uncut = Split(concave_cost(ring, scale.roughness), (ring,))
-    if depth == 0 or uncut.cost < _CONVEX:
+    if depth == len(_BRANCHES) or uncut.cost < CONVEX:
         return uncut
+    best, second, chosen = uncut, np.inf, None
+    for cost, cut, parts in _best_cuts(ring, scale, image, noise, _BRANCHES[depth]):
+        if cost >= best.cost:
+            break
+        pieces = [split(part, scale, image, noise, depth + 1) for part in parts]
+        total = cost + sum(piece.cost for piece in pieces)
+        if total < best.cost:
+            second, chosen = best.cost, (cut, pieces)
+            best = _joined(total, cut, 0.0, pieces)
+        else:
+            second = min(second, total)
+    return uncut if chosen is None else _joined(best.cost, chosen[0], second - best.cost, chosen[1])
+
+
+def split_seen(
+    ring: FloatArray, scale: Scale, image: FaceImage, suspects: Suspects, depth: int = 0
+) -> tuple[FloatArray, ...]:
+    """Cuts a ring along the grooves and steps that are beyond doubt."""
+    lines = [groove_line(image, scale.pitch)] if suspects.groove else []
+    lines += [step_line(image, suspects.noise)] if suspects.step else []
+    for line in lines:
+        if line is None or depth == len(_BRANCHES):
+            continue
+        i, j = chord(ring, line[0], line[1], line[2])
+        if i < 0 or trace_strength(image, ring[i], ring[j], scale.pitch, suspects.noise) < _PROOF:
+            continue
+        parts = both_pieces(ring, i, j, along(ring, i, j, line[0], line[1], line[2]), scale)
+        if left_concave(*parts, scale) < CONVEX + concave_cost(ring, scale.roughness):
+            return tuple(piece for part in parts for piece in split_seen(part, scale, image, suspects, depth + 1))
+    return (ring,)
+
+
+def _best_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, count: int) -> list[_Cut]:
+    """Cost, ends and pieces of the most promising cuts."""
     polygon = simplified(ring, corner_tolerance(scale))
     if len(polygon) < 4:
-        return uncut
+        return []
     corners = corners_of_ring(ring, polygon)
     cuts = candidates(
         ring, corners.index, corners.lines, corners.length, scale.pitch,
         _COSTS.open_end, _COSTS.corner_end, _COSTS.bend, _COSTS.neck,
     )  # fmt: skip
-    costs = judged(
-        ring, cuts, corners.index, corners.lines, corners.fitted, scale,
-        _COSTS.cut, _COSTS.length, _COSTS.thin, _COSTS.thin_width,
-    )  # fmt: skip
-    best, second = uncut, np.inf
-    for k in np.argsort(costs[:, 1])[:_BRANCHES]:
-        if not (costs[k, 0] < best.cost):
-            continue
-        i, j = int(cuts[k, 0]), int(cuts[k, 1])
-        line = seam_line(ring, cuts[k], corners.index, corners.lines, corners.fitted, scale)
-        parts = [split(part, scale, depth - 1) for part in both_pieces(ring, i, j, line, scale)]
-        cost = float(costs[k, 0]) + sum(part.cost for part in parts)
-        if cost < best.cost:
-            best, second = _joined(cost, np.array((ring[i], ring[j])), parts), best.cost
-        else:
-            second = min(second, cost)
-    if best is uncut:
-        return uncut
-    return Split(best.cost, best.pieces, best.cuts, (second - best.cost, *best.rivals[1:]))
+    costs = estimated(ring, cuts, corners.index, scale, _COSTS.cut, _COSTS.length, _COSTS.thin, _COSTS.thin_width)
+    found: list[tuple[float, _Cut]] = []
+    for k in np.argsort(costs[:, 2])[: 2 * count]:
+        if costs[k, 2] < np.inf:
+            line = seam_line(ring, cuts[k], corners.index, corners.lines, corners.fitted, scale)
+            i, j = int(cuts[k, 0]), int(cuts[k, 1])
+            parts = both_pieces(ring, i, j, line, scale)
+            doubt = 1.0 - _SEEN * trace_strength(image, ring[i], ring[j], scale.pitch, noise)
+            cost = float(costs[k, 0] * doubt + costs[k, 1])
+            found.append((cost + float(left_concave(*parts, scale)), (cost, ring[[i, j]], parts)))
+    found.sort(key=lambda one: one[0])
+    return [cut for total, cut in found[:count] if total < np.inf]
 
 
-def _joined(cost: float, cut: FloatArray, parts: list[Split]) -> Split:
+def _joined(cost: float, cut: FloatArray, rival: float, parts: list[Split]) -> Split:
     first, second = parts
     return Split(
         cost,
         first.pieces + second.pieces,
         (cut, *first.cuts, *second.cuts),
-        (0.0, *first.rivals, *second.rivals),
+        (rival, *first.rivals, *second.rivals),
     )

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from singulation_perception.levels import levels_of, nearest_level
+from singulation_perception.levels import level_at, levels_of
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
 from singulation_perception.union_find import numbered_roots, single_sets, unite
 
@@ -39,6 +39,8 @@ class Faces:
         flat: (f,) whether it is a level with many points; else a whole surface that has no flat part.
         count: (f,) points.
         height: (f,) mean height [m].
+        scatter: (f,) standard deviation of the heights [m].
+        holes: (f,) pixels without a point between points in the same row.
         box: (f, 4) first row, row after the last, first column, column after the last.
     """
 
@@ -48,6 +50,8 @@ class Faces:
     flat: NDArray[np.bool_]
     count: IntArray
     height: NDArray[np.float64]
+    scatter: NDArray[np.float64]
+    holes: IntArray
     box: IntArray
 
 
@@ -64,7 +68,7 @@ def surfaces_of(seen: ObjectPoints, step: float, cluster: IntArray | None = None
     return Surfaces(surface, *_sizes(seen.xyz, seen.runs, surface, count))
 
 
-def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, highest: float, min_size: int) -> Faces:
+def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, highest: float, min_size: int) -> Faces:
     """Parts surfaces into the levels at which they have many points.
 
     A wall that is seen obliquely can chain the tops of several blocks into one surface; the levels part them again.
@@ -73,16 +77,19 @@ def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, highest: float
         seen: the object points.
         surfaces: of them.
         band: half the height range of a face [m].
+        apart: least height difference of two faces [m].
         highest: surfaces that reach higher have no faces [m].
         min_size: fewest points of a level.
     """
     wanted = (surfaces.count >= min_size) & (surfaces.top <= highest)
-    first, levels = levels_of(seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, highest, min_size)
-    runs, level = _runs_on_levels(seen.xyz, seen.runs, surfaces.of_run, first, levels, band)
+    first, levels = levels_of(
+        seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, apart, highest, min_size
+    )
+    runs, level = _runs_on_levels(seen.xyz, seen.runs, surfaces.of_run, first, levels)
     face, count = connected_runs(seen.xyz, runs, level, np.inf)
-    counts, heights, boxes, level_of_face = _face_table(seen.xyz, runs, face, level, count)
+    counts, heights, scatter, holes, boxes, level_of_face = _face_table(seen.xyz, runs, face, level, count)
     surface = np.searchsorted(first, level_of_face, side="right").astype(np.int32) - 1
-    return Faces(runs, face, surface, np.isfinite(levels[level_of_face]), counts, heights, boxes)
+    return Faces(runs, face, surface, np.isfinite(levels[level_of_face, 0]), counts, heights, scatter, holes, boxes)
 
 
 @njit(cache=True)
@@ -132,7 +139,7 @@ def _sizes(xyz: Points, runs: IntArray, surface: IntArray, count: int) -> tuple[
 
 @njit(cache=True)
 def _runs_on_levels(
-    xyz: Points, runs: IntArray, surface: IntArray, first: IntArray, levels: NDArray[np.float64], band: float
+    xyz: Points, runs: IntArray, surface: IntArray, first: IntArray, levels: NDArray[np.float64]
 ) -> tuple[IntArray, IntArray]:
     """Runs cut where the level changes, without the points that lie on none."""
     total = 0
@@ -148,7 +155,7 @@ def _runs_on_levels(
         last = -1
         for column in range(runs[run, START], runs[run, STOP]):
             i = runs[run, FIRST] + column - runs[run, START]
-            level = nearest_level(levels, begin, end, xyz[i, 2], band)
+            level = level_at(levels, begin, end, xyz[i, 2])
             if level >= 0:
                 if level != last:
                     cut[count, 0], cut[count, 1], cut[count, 3] = runs[run, ROW], column, i
@@ -162,23 +169,30 @@ def _runs_on_levels(
 @njit(cache=True)
 def _face_table(
     xyz: Points, runs: IntArray, face: IntArray, level: IntArray, count: int
-) -> tuple[IntArray, NDArray[np.float64], IntArray, IntArray]:
-    counts = np.zeros(count, dtype=np.int32)
-    heights = np.zeros(count, dtype=np.float64)
+) -> tuple[IntArray, NDArray[np.float64], NDArray[np.float64], IntArray, IntArray, IntArray]:
+    counts, holes = np.zeros(count, dtype=np.int32), np.zeros(count, dtype=np.int32)
+    heights, squares = np.zeros(count, dtype=np.float64), np.zeros(count, dtype=np.float64)
     level_of_face = np.zeros(count, dtype=np.int32)
     box = np.empty((count, 4), dtype=np.int32)
+    last = np.empty(count, dtype=np.int32)  # run of each face
     for run in range(len(runs)):
         one = face[run]
         if counts[one] == 0:
             box[one, 0], box[one, 2], box[one, 3] = runs[run, ROW], runs[run, START], runs[run, STOP]
             level_of_face[one] = level[run]
+        elif runs[last[one], ROW] == runs[run, ROW]:
+            holes[one] += runs[run, START] - runs[last[one], STOP]
+        last[one] = run
         box[one, 1] = runs[run, ROW] + 1
         box[one, 2] = min(box[one, 2], runs[run, START])
         box[one, 3] = max(box[one, 3], runs[run, STOP])
         length = runs[run, STOP] - runs[run, START]
         counts[one] += length
         for i in range(runs[run, FIRST], runs[run, FIRST] + length):
-            heights[one] += xyz[i, 2]
+            height = np.float64(xyz[i, 2])
+            heights[one] += height
+            squares[one] += height * height
     for one in range(count):
         heights[one] /= counts[one]
-    return counts, heights, box, level_of_face
+        squares[one] = np.sqrt(max(squares[one] / counts[one] - heights[one] ** 2, 0.0))
+    return counts, heights, squares, holes, box, level_of_face

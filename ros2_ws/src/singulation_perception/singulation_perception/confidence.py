@@ -1,0 +1,73 @@
+"""How far an outline can be trusted, from what the cloud shows and does not show of it.
+
+The factors are judgements, not probabilities; what counts is their order: an outline with a doubt is worth less than one
+without. A confidence below one half says: do not rely on this outline.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+
+_USUAL_SUPPORT = 0.9  # share of the outline with points; corners never have them
+_USUAL_FILL = 0.8
+_CLEAR_LEAD = 0.008  # [m] by which the second best way to cut is dearer when there is no doubt
+UNUSUAL_EXTENT = 1.5  # times the median, from which a block may be two
+FEWEST_TO_COMPARE = 4
+
+FLUSH, STACKED, CLIPPED = 0.45, 0.3, 0.8
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for an outline.
+
+    Args:
+        supported: share of its length with points of the rim or of a seam near it.
+        filled: share of the pixels of its face that have points.
+        flat: whether the face is a level with many points.
+        concave: whether it covers a pocket that no cut explains.
+        truncated: whether it ends at the border of the workspace or of the image.
+        lead: how much dearer the next best way to cut was, for the most doubtful seam beside it [m].
+    """
+
+    supported: float
+    filled: float
+    flat: bool
+    concave: bool
+    truncated: bool
+    lead: float
+
+    @property
+    def confidence(self) -> float:
+        """0..1."""
+        value = 0.3 + 0.7 * min(1.0, self.supported / _USUAL_SUPPORT)
+        value *= min(1.0, self.filled / _USUAL_FILL)
+        value *= 0.55 + 0.45 * min(1.0, self.lead / _CLEAR_LEAD)
+        for doubt in (not self.flat, self.concave, self.truncated):
+            value *= 0.5 if doubt else 1.0
+        return float(value)
+
+
+@njit(cache=True)
+def supported_share(outline: FloatArray, ring: FloatArray, reach: float, pitch: float) -> float:
+    """Share of the length of an outline with points of a ring within ``reach`` [m]."""
+    supported, total = 0, 0
+    for k in range(len(outline)):
+        j = k + 1 if k + 1 < len(outline) else 0
+        x, y = outline[j, 0] - outline[k, 0], outline[j, 1] - outline[k, 1]
+        length = np.sqrt(x * x + y * y)
+        x, y = x / max(length, 1e-12), y / max(length, 1e-12)
+        places = max(1, int(length / (3.0 * pitch)))
+        seen = np.zeros(places, dtype=np.int64)
+        for i in range(len(ring)):
+            dx, dy = ring[i, 0] - outline[k, 0], ring[i, 1] - outline[k, 1]
+            along = dx * x + dy * y
+            if abs(dx * y - dy * x) < reach and 0.0 <= along < length:
+                seen[min(places - 1, int(along / length * places))] = 1
+        total += places
+        for place in range(places):
+            supported += seen[place]
+    return supported / max(total, 1)

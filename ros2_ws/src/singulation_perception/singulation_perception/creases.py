@@ -1,0 +1,102 @@
+"""Straight lines inside a face that look like the seam of two flush blocks: rows of missing points, steps of height.
+
+Concave corners are the usual trace of touching blocks. Where two blocks are flush at both ends there is none, but a gap
+narrower than the point spacing still costs points along the seam, and unequal heights leave a step.
+"""
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+from singulation_perception.face_image import FaceImage, to_table
+from singulation_perception.object_points import IntArray
+
+_FEWEST = 8  # missing points of a groove
+_TRIALS = 400  # lines through two of them
+_WIDTH = 0.8  # pitches on either side of a line within which points belong to it
+_SHARE = 0.22  # of the places on a line that are missing, from which it is looked at more closely
+_UNEVEN = 1.3  # a face of two heights scatters that much more than others
+
+
+def groove_line(image: FaceImage, pitch: float) -> FloatArray | None:
+    """Normal and offset (3,) of the line that holds most missing points, None if no line holds many."""
+    holes = _holes(image.point)
+    if len(holes) < _FEWEST:
+        return None
+    places = np.column_stack((holes, np.ones(len(holes)))) @ to_table(image).T
+    random = np.random.default_rng(3)
+    pairs = random.integers(0, len(places), (_TRIALS, 2))
+    line, count, extent = _best_line(np.ascontiguousarray(places), pairs, _WIDTH * pitch)
+    if count < max(_FEWEST, _SHARE * extent / pitch):
+        return None
+    return line
+
+
+@njit(cache=True)
+def _holes(point: IntArray) -> FloatArray:
+    """(h, 2) rows and columns of pixels without a point between the first and the last point of row and column."""
+    rows, columns = point.shape
+    top, bottom = np.empty(columns, dtype=np.int64), np.empty(columns, dtype=np.int64)
+    for column in range(columns):
+        top[column], bottom[column] = rows, -1
+        for row in range(rows):
+            if point[row, column] >= 0:
+                top[column] = min(top[column], row)
+                bottom[column] = row
+    holes = np.empty((rows * columns, 2))
+    count = 0
+    for row in range(rows):
+        left, right = columns, -1
+        for column in range(columns):
+            if point[row, column] >= 0:
+                left, right = min(left, column), column
+        for column in range(left + 2, right - 1):
+            if point[row, column] < 0 and top[column] + 1 < row < bottom[column] - 1:
+                holes[count, 0], holes[count, 1] = row, column
+                count += 1
+    return holes[:count]
+
+
+@njit(cache=True)
+def _best_line(places: FloatArray, pairs: IntArray, width: float) -> tuple[FloatArray, int, float]:
+    """Line through two places with most places near it, how many, and how far apart the outermost are."""
+    best = np.zeros(3)
+    most, extent = 0, 0.0
+    for k in range(len(pairs)):
+        a, b = places[pairs[k, 0]], places[pairs[k, 1]]
+        ux, uy = b[0] - a[0], b[1] - a[1]
+        length = np.sqrt(ux * ux + uy * uy)
+        if length < 4.0 * width:
+            continue
+        ux, uy = ux / length, uy / length
+        count, low, high = 0, 0.0, 0.0
+        for i in range(len(places)):
+            x, y = places[i, 0] - a[0], places[i, 1] - a[1]
+            if abs(x * uy - y * ux) < width:
+                t = x * ux + y * uy
+                count, low, high = count + 1, min(low, t), max(high, t)
+        if count > most:
+            most, extent = count, high - low
+            best[0], best[1], best[2] = uy, -ux, uy * a[0] - ux * a[1]
+    return best, most, extent
+
+
+def step_line(image: FaceImage, noise: float) -> FloatArray | None:
+    """Normal and offset (3,) of the line that parts a face of two heights, None if it has one height."""
+    chosen = image.point[image.point >= 0]
+    points = image.xyz[chosen[:: max(1, len(chosen) // 4000)]].astype(np.float64)
+    heights = points[:, 2] - np.median(points[:, 2])
+    if not (float(heights.std()) > _UNEVEN * noise):
+        return None
+    upper = np.where(heights > 0.5 * (np.quantile(heights, 0.1) + np.quantile(heights, 0.9)), 1.0, -1.0)
+    middle = points[:, :2].mean(axis=0)
+    slope = np.linalg.lstsq(points[:, :2] - middle, upper - upper.mean(), rcond=None)[0]
+    length = float(np.hypot(*slope))
+    if not (length > 0.0):
+        return None
+    normal = slope / length
+    position = points[:, :2] @ normal
+    order = np.argsort(position)
+    difference = np.cumsum(upper[order] - upper.mean())
+    cut = int(np.abs(difference).argmax())
+    return np.array((normal[0], normal[1], position[order[cut]]))

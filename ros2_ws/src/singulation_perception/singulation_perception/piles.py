@@ -1,0 +1,88 @@
+"""Blocks whose outlines overlap: stacked ones, and low ones whose hidden part was drawn too large."""
+
+import numpy as np
+
+from singulation_core.polygon import FloatArray, convex_hull, inward_half_planes, signed_area
+from singulation_perception.confidence import CLIPPED, STACKED
+from singulation_perception.convex_overlap import shared_area
+from singulation_perception.found_block import FoundBlock
+
+_STACKED = 0.25  # share of the upper block that lies over the lower one
+_NEGLIGIBLE = 0.02  # share of the lower block that noise explains
+_SLIVER = 1e-7  # [m^2]
+
+
+def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], int]:
+    """Joins stacked blocks to one pile, which moves as one, and takes overlaps off the lower of two neighbours.
+
+    Args:
+        blocks: in any order.
+        step: height difference from which one block is higher than another [m].
+
+    Returns:
+        The blocks, and how many lie on others and became part of their pile.
+    """
+    waiting = sorted(blocks, key=lambda block: block.height)
+    if not _any_near(waiting, step):
+        return waiting, 0
+    done: list[FoundBlock] = []
+    stacked = 0
+    while waiting:
+        block = waiting.pop(0)
+        for upper in [one for one in waiting if one.height > block.height + step and _near(block, one)]:
+            shared = float(shared_area(block.outline, upper.outline))
+            if shared > _STACKED * signed_area(upper.outline):
+                waiting.remove(upper)
+                block = _pile(block, upper)
+                stacked += 1
+            elif shared > _NEGLIGIBLE * signed_area(block.outline):
+                block = _clipped(block, upper)
+        done.append(block)
+    return done, stacked
+
+
+def _any_near(blocks: list[FoundBlock], step: float) -> bool:
+    """Whether the bounding circles of any two blocks of different height meet."""
+    if len(blocks) < 2:
+        return False
+    centres = np.array([block.centre for block in blocks])
+    radii, heights = (np.array([getattr(block, name) for block in blocks]) for name in ("radius", "height"))
+    apart = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
+    return bool(((apart < radii[:, None] + radii[None]) & (heights[:, None] > heights[None] + step)).any())
+
+
+def _near(one: FoundBlock, two: FoundBlock) -> bool:
+    x, y = one.centre - two.centre
+    return bool(x * x + y * y < (one.radius + two.radius) ** 2)
+
+
+def cut_off(outline: FloatArray, normal: FloatArray, offset: float) -> FloatArray:
+    """The part of a convex outline with normal . p >= offset, (m, 2), m = 0 if there is none."""
+    side = outline @ normal - offset
+    kept: list[FloatArray] = []
+    for k in range(len(outline)):
+        j = (k + 1) % len(outline)
+        if side[k] >= 0.0:
+            kept.append(outline[k])
+        if side[k] * side[j] < 0.0:
+            kept.append(outline[k] + (outline[j] - outline[k]) * side[k] / (side[k] - side[j]))
+    return np.array(kept).reshape(-1, 2)
+
+
+def _pile(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
+    outline = convex_hull(np.vstack((lower.outline, upper.outline)))
+    confidence = STACKED * min(lower.confidence, upper.confidence)
+    return FoundBlock(outline, upper.height, lower.count + upper.count, confidence, lower.surface)
+
+
+def _clipped(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
+    """The lower block without what lies beyond the edge of the upper one that costs it least."""
+    parts = [
+        cut_off(lower.outline, -normal, -float(offset))
+        for normal, offset in zip(*inward_half_planes(upper.outline), strict=True)
+    ]
+    best = max(parts, key=lambda part: signed_area(part) if len(part) > 2 else 0.0)
+    if len(best) < 3 or not (signed_area(best) > _SLIVER):
+        return lower.doubted(STACKED)
+    best = convex_hull(best)
+    return FoundBlock(best, lower.height, lower.count, CLIPPED * lower.confidence, lower.surface)
