@@ -1,7 +1,7 @@
 """Mends the CMake files of the ROS wheels in this environment.
 
-The wheels were built elsewhere, and the exported targets of every interface package name that machine's Python and NumPy
-headers. They are replaced by this environment's own; run again, nothing is left to replace.
+The wheels were built elsewhere, and the exported targets of every interface package name that machine's Python and
+NumPy headers. They are replaced by this environment's own; run again, nothing is left to replace.
 """
 
 import re

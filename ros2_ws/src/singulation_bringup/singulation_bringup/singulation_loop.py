@@ -84,13 +84,14 @@ class Progress:
 
     def repeat_last_look(self) -> None:
         """Nothing new was seen."""
-        for values in (self.distances, self.gaps, self.counts):
-            values.append(values[-1])  # type: ignore[attr-defined]  # lists of float and int
+        self.distances.append(self.distances[-1])
+        self.gaps.append(self.gaps[-1])
+        self.counts.append(self.counts[-1])
 
     def forget_last_look(self) -> None:
         """Another look takes its place."""
         for values in (self.distances, self.gaps, self.counts):
-            values.pop()  # type: ignore[attr-defined]
+            values.pop()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """How far an outline can be trusted, from what the cloud shows and does not show of it.
 
-The factors are judgements, not probabilities; what counts is their order: an outline with a doubt is worth less than one
-without. A confidence below one half says: do not rely on this outline.
+The factors are judgements, not probabilities; what counts is their order: an outline with a doubt is worth less than
+one without. A confidence below one half says: do not rely on this outline.
 """
 
 from dataclasses import dataclass

@@ -9,7 +9,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.boundaries import FaceMaps
 from singulation_perception.confidence import Evidence, supported_share
 from singulation_perception.cutting import concave_cost
-from singulation_perception.face_image import FaceImage, face_image
+from singulation_perception.face_image import face_image
 from singulation_perception.face_rings import FaceRings
 from singulation_perception.found_block import FoundBlock, shares
 from singulation_perception.hidden import View, without_hidden
@@ -67,7 +67,9 @@ class FaceBlocks:
         counts, heights = self._shares(k, [outline for _, _, outline in good])
         surface = int(self.faces.surface[self.maps.faces[k]])
         return [
-            FoundBlock(outline, heights[i], counts[i], self._evidence(k, scale, ring, outline, lead).confidence, surface)
+            FoundBlock(
+                outline, heights[i], counts[i], self._evidence(k, scale, ring, outline, lead).confidence, surface
+            )
             for i, (ring, lead, outline) in enumerate(good)
         ]
 

@@ -32,9 +32,7 @@ def trace_strength(image: FaceImage, start: FloatArray, end: FloatArray, pitch: 
 
 
 @njit(cache=True)
-def _along(
-    image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float
-) -> tuple[float, float, float]:
+def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float) -> tuple[float, float, float]:
     """Share of places on the line without points, beyond what is missing beside it; step [m] and its standard error.
 
     The step compares heights extrapolated to the line from either side, so that a tilted face has none.
