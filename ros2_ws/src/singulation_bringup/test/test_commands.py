@@ -132,7 +132,7 @@ def test_status_shows_states_rates_robot_and_outcomes(ros_context):
     )
     outcome = robot.create_publisher(PushOutcome, "last_outcome", LATCHED)
     outcome.publish(PushOutcome(code=305, message="silent for 0.3 s", push=PushTrajectory(target_id=4)))
-    overview = Overview(("executor_node", "planner_node", "singulate_node"))
+    overview = Overview(("executor_node", "planner_node", "nobody"))
     with spinning(robot, planner), CommandNode("status", context=ros_context) as command:
         robot.start()
         planner.start()
@@ -146,7 +146,7 @@ def test_status_shows_states_rates_robot_and_outcomes(ros_context):
     assert shown == 1
     assert overview.state("executor_node", now, 3.0) == "active"
     assert overview.state("planner_node", now, 3.0) == "failed"
-    assert overview.state("singulate_node", now, 3.0) == "missing"
+    assert overview.state("nobody", now, 3.0) == "missing"
     assert overview.topics["joint_states"].rate(now, 3.0) > 0.0
     for words in (
         "2 joints",
