@@ -48,6 +48,34 @@ def test_a_far_block_is_a_new_one():
     assert second.lost == (0,)
 
 
+def test_a_row_of_equal_blocks_pushed_by_one_length_is_told_apart_by_what_was_expected():
+    tracker = Tracker()
+    first = tracker.update(Arrangement([block(i, SQUARE, 0.041 * i, 0) for i in range(3)]))
+    moved = [block(first.lasting_ids[i], SQUARE, 0.041 * (i + 1), 0) for i in range(3)]
+    seen = Arrangement([block(9 - i, SQUARE, 0.041 * (i + 1), 0) for i in range(3)])
+    second = tracker.update(seen, expected=Arrangement(moved))
+    assert second.lasting_ids == {9 - i: first.lasting_ids[i] for i in range(3)}
+
+
+def test_blocks_first_seen_as_one_are_no_lost_block():
+    pair = np.array(((0.0, 0.0), (0.081, 0.0), (0.081, 0.04), (0.0, 0.04)))
+    tracker = Tracker()
+    first = tracker.update(Arrangement([PlanarObject(0, pair)]))
+    second = tracker.update(Arrangement([PlanarObject(4, SQUARE), PlanarObject(5, SQUARE + (0.041, 0.0))]))
+    assert second.divided == (first.lasting_ids[0],)
+    assert second.lost == ()
+    assert len(second.found) == 2
+
+
+def test_a_block_under_another_outline_is_covered():
+    pair = np.array(((0.0, 0.0), (0.081, 0.0), (0.081, 0.04), (0.0, 0.04)))
+    tracker = Tracker()
+    tracker.update(Arrangement([PlanarObject(0, SQUARE), PlanarObject(1, SQUARE + (0.041, 0.0))]))
+    assert tracker.update(Arrangement([PlanarObject(0, pair)])).covered == (0, 1)
+    far = Arrangement([PlanarObject(0, SQUARE + (0.0, 0.4))])
+    assert tracker.update(far).covered == ()
+
+
 def test_empty_looks_are_no_trouble():
     tracker = Tracker()
     assert tracker.update(Arrangement([])).lost == ()

@@ -25,6 +25,7 @@ def curve(
     known = [value for value in values if value is not None] + ([] if limit is None else [limit])
     steps = _levels(min(known, default=0.0), max(known, default=1.0))
     low, high = steps[0], steps[-1]
+    digits = max(len(f"{level:g}".partition(".")[2]) for level in steps)
 
     def x(push: float) -> float:
         return round(_LEFT + push * (_WIDTH - _LEFT - _RIGHT) / max(len(values) - 1, 1), 1)
@@ -35,7 +36,7 @@ def curve(
     parts = [tag("title", f"{title}. {description}")]
     for level in steps:
         parts.append(tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y(level), y2=y(level), class_="grid"))
-        parts.append(tag("text", f"{level:g}", x=_LEFT - 6, y=y(level) + 4, text_anchor="end"))
+        parts.append(tag("text", f"{level:.{digits}f}", x=_LEFT - 6, y=y(level) + 4, text_anchor="end"))
     every = max(1, math.ceil(len(values) / 11))
     for push in range(0, len(values), every):
         parts.append(tag("text", str(push), x=x(push), y=_HEIGHT - _BOTTOM + 16, text_anchor="middle"))
