@@ -9,7 +9,7 @@ def yaml_value(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):
-        plain = format(Decimal(repr(value)), "f")
+        plain = format(Decimal(repr(float(value))), "f")
         return plain if "." in plain else f"{plain}.0"
     if isinstance(value, tuple | list):
         return f"[{', '.join(yaml_value(item) for item in value)}]"
