@@ -30,6 +30,7 @@ class CellTimeouts:
         plan: for one answer of the planner.
         execute: for one push, from goal to result.
         stop: from a cancel request to standstill.
+        view_attempts: the camera is triggered so often for one look, each time with ``view`` to wait.
     """
 
     ready: float = 10.0
@@ -37,6 +38,7 @@ class CellTimeouts:
     plan: float = 30.0
     execute: float = 120.0
     stop: float = 10.0
+    view_attempts: int = 1
 
 
 class RosCell:
@@ -96,11 +98,7 @@ class RosCell:
         Raises:
             SingulationError: ``NO_FRESH_VIEW`` or ``CANCELLED``.
         """
-        if self._camera is not None:
-            answer = self._await(self._camera.call_async(Trigger.Request()), self._timeouts.view, "the camera trigger")
-            if not answer.success:
-                raise SingulationError(ResultCode.NO_FRESH_VIEW, f"the camera did not trigger: {answer.message}")
-        message = self._wait_for_fresh_view()
+        message = self._fresh_view()
         seen = conversions.arrangement_from_msg(message)
         self._headers = {id(seen): message}
         return seen
@@ -127,14 +125,7 @@ class RosCell:
         message = next(iter(self._headers.values()))
         goal = ExecutePush.Goal(push=conversions.push_to_msg(push, message.header))
         try:
-            handle = self._await(self._executor.send_goal_async(goal), self._timeouts.plan, "execute_push")
-            if not handle.accepted:
-                raise SingulationError(ResultCode.REJECTED, "the executor rejected the goal; its log says why")
-            future = handle.get_result_async()
-            self._await(future, self._timeouts.execute, "the push", lambda: self._cancel(handle, future))
-            _require_ok(future.result().result)
-            if future.result().status != GoalStatus.STATUS_SUCCEEDED:
-                raise SingulationError(ResultCode.INTERNAL, f"execute_push ended in status {future.result().status}")
+            self._see_through(self._accepted(goal))
         finally:
             self._fresh_from = self._node.get_clock().now()
 
@@ -147,6 +138,25 @@ class RosCell:
     def get_logger(self) -> Any:
         """Logger of the node, for ``guarded``."""
         return self._node.get_logger()
+
+    def _fresh_view(self) -> Any:
+        """Trigger and wait; clouds travel best effort, and one that is lost is asked for again."""
+        for left in reversed(range(self._timeouts.view_attempts)):
+            self._trigger()
+            try:
+                return self._wait_for_fresh_view()
+            except SingulationError as error:
+                if error.code is not ResultCode.NO_FRESH_VIEW or left == 0:
+                    raise
+                self._node.get_logger().warning(f"{error}; looking again")
+        raise SingulationError(ResultCode.INTERNAL, "view_attempts is below 1")
+
+    def _trigger(self) -> None:
+        if self._camera is None:
+            return
+        answer = self._await(self._camera.call_async(Trigger.Request()), self._timeouts.view, "the camera trigger")
+        if not answer.success:
+            raise SingulationError(ResultCode.NO_FRESH_VIEW, f"the camera did not trigger: {answer.message}")
 
     def _wait_for_fresh_view(self) -> Any:
         deadline = time.monotonic() + self._timeouts.view
@@ -169,29 +179,79 @@ class RosCell:
         stamp = Time.from_msg(self._latest.header.stamp, clock_type=self._fresh_from.clock_type)
         return bool((stamp - self._fresh_from).nanoseconds >= 1e9 * self._view_delay)
 
-    def _cancel(self, handle: Any, future: Any) -> None:
-        """Ask the executor to stop and wait until it has."""
-        handle.cancel_goal_async()
+    def _accepted(self, goal: Any) -> Any:
+        """Handle of a goal that the executor took. A cancel waits for it: a push must not begin behind our back.
+
+        Raises:
+            SingulationError: ``REJECTED``, or ``PUSH_FAILED`` without an answer; it is cancelled if taken later.
+        """
+        sent, done = self._executor.send_goal_async(goal), threading.Event()
+        sent.add_done_callback(lambda _: done.set())
+        if not done.wait(self._timeouts.plan):
+            sent.add_done_callback(_cancel_late)
+            raise SingulationError(
+                ResultCode.PUSH_FAILED, f"execute_push did not answer a goal within {self._timeouts.plan} s"
+            )
+        handle = sent.result()
+        if not handle.accepted:
+            raise SingulationError(ResultCode.REJECTED, "the executor rejected the goal; its log says why")
+        return handle
+
+    def _see_through(self, handle: Any) -> None:
+        """Wait for the end of a push; nothing is left moving behind.
+
+        Raises:
+            SingulationError: with the executor's code; ``TIMEOUT`` if it took too long and was stopped; ``PUSH_FAILED``
+                if it does not answer any more, and nobody knows whether it stands.
+        """
+        future = handle.get_result_async()
+        late = False
+        try:
+            self._await(future, self._timeouts.execute, "the push")
+        except SingulationError as error:
+            late = error.code is ResultCode.TIMEOUT
+            self._stop(handle, future)
+        result = future.result().result
+        if late and result.code == ResultCode.CANCELLED:
+            text = f"the push took more than {self._timeouts.execute} s and was stopped: {result.message}"
+            raise SingulationError(ResultCode.TIMEOUT, text)
+        _require_ok(result)
+        if future.result().status != GoalStatus.STATUS_SUCCEEDED:
+            raise SingulationError(ResultCode.INTERNAL, f"execute_push ended in status {future.result().status}")
+
+    def _stop(self, handle: Any, future: Any) -> None:
+        """Ask the executor to stop and wait until it has ended, one way or another."""
         stopped = threading.Event()
         future.add_done_callback(lambda _: stopped.set())
+        handle.cancel_goal_async()
         if not stopped.wait(self._timeouts.stop):
-            raise SingulationError(ResultCode.TIMEOUT, f"the executor did not stop within {self._timeouts.stop} s")
-        raise SingulationError(ResultCode.CANCELLED, "cancelled by the client during a push")
+            raise SingulationError(
+                ResultCode.PUSH_FAILED,
+                f"the executor was asked to stop and did not answer within {self._timeouts.stop} s; look at the robot",
+            )
 
-    def _await(self, future: Any, timeout: float, what: str, on_cancel: Callable[[], None] | None = None) -> Any:
-        """Result of a future; the node spins in other threads."""
-        on_cancel = on_cancel or self.check_cancelled
+    def _await(self, future: Any, timeout: float, what: str) -> Any:
+        """Result of a future; the node spins in other threads.
+
+        Raises:
+            SingulationError: ``CANCELLED`` or ``TIMEOUT``.
+        """
         done = threading.Event()
         future.add_done_callback(lambda _: done.set())
         for _ in range(max(1, round(timeout / _CANCEL_CHECK))):
             if done.wait(_CANCEL_CHECK):
                 return future.result()
-            if self._cancel_requested():
-                on_cancel()
+            self.check_cancelled()
         raise SingulationError(ResultCode.TIMEOUT, f"{what} did not answer within {timeout} s")
 
 
 _CANCEL_CHECK = 0.05  # s
+
+
+def _cancel_late(sent: Any) -> None:
+    """A goal that was taken after it had been given up."""
+    if sent.result().accepted:
+        sent.result().cancel_goal_async()
 
 
 def _require_ok(answer: Any) -> None:

@@ -11,7 +11,15 @@ from singulation_msgs.msg import PushOutcome
 from std_msgs.msg import Header
 
 from singulation_bringup.ros_cell import CellTimeouts, RosCell
-from singulation_bringup.singulation_loop import Outcome, Progress, SingulationGoal, SingulationLoop, SingulationResult
+from singulation_bringup.singulation_loop import (
+    DEFAULT_MIN_GAP,
+    FALLBACK_POLICIES,
+    Outcome,
+    Progress,
+    SingulationGoal,
+    SingulationLoop,
+    SingulationResult,
+)
 from singulation_core import ResultCode, SingulationError, conversions
 from singulation_node.guard import guarded, report_failure
 from singulation_node.main import run_node
@@ -28,12 +36,15 @@ class SingulateSettings:
 
     trigger_service: str = parameter("trigger_frame", 'camera trigger (std_srvs/Trigger), "" if the camera runs freely')
     view_delay: float = parameter(0.0, "a cloud is fresh this long after the last motion [s]", low=0.0, high=10.0)
+    min_gap: float = parameter(
+        DEFAULT_MIN_GAP, "gap that counts as separated if a goal says 0 [m]", low=0.0001, high=1.0
+    )
     fallback_policies: tuple[str, ...] = parameter(
-        ("min_overlap", "center_object_removal", "cluster_diffusion", "boundary_shear"),
-        "policies asked in turn when the planned push cannot be performed",
+        FALLBACK_POLICIES, "policies asked in turn when the planned push cannot be performed"
     )
     ready_timeout: float = parameter(10.0, "wait for planner, executor, camera [s]", low=0.1, high=600.0)
     view_timeout: float = parameter(10.0, "wait for a fresh arrangement [s]", low=0.1, high=600.0)
+    view_attempts: int = parameter(3, "triggers for one look at most, as a cloud may be lost", low=1, high=10)
     plan_timeout: float = parameter(30.0, "wait for the planner's answer [s]", low=0.1, high=600.0)
     execute_timeout: float = parameter(120.0, "wait for the end of one push [s]", low=1.0, high=3600.0)
     stop_timeout: float = parameter(10.0, "wait for standstill after a cancel [s]", low=0.1, high=60.0)
@@ -62,6 +73,7 @@ class SingulateNode(ManagedNode[SingulateSettings]):
             settings.plan_timeout,
             settings.execute_timeout,
             settings.stop_timeout,
+            settings.view_attempts,
         )
         self._cell = RosCell(self, timeouts, settings.trigger_service, settings.view_delay)
         self._server = ActionServer(
@@ -126,7 +138,7 @@ class SingulateNode(ManagedNode[SingulateSettings]):
             raise SingulationError(ResultCode.NOT_READY, "not active")
         goal = SingulationGoal(
             int(request.max_pushes),
-            float(request.min_gap),
+            float(request.min_gap) or self.settings.min_gap,
             request.policy,
             conversions.contact_mode_from_msg(request.contact_mode),
             self.settings.fallback_policies,

@@ -32,7 +32,8 @@ class ScriptedCell(Node):
     def __init__(self, context):
         super().__init__("scripted_cell", context=context)
         self.gap, self.blind, self.code, self.slow = 0.001, False, ResultCode.OK, False
-        self.stood_still = threading.Event()
+        self.stood_still, self.pushing = threading.Event(), threading.Event()
+        self.lost_clouds, self.triggers, self.cancel_code = 0, 0, ResultCode.CANCELLED
         group = ReentrantCallbackGroup()
         self.objects = self.create_publisher(ArrangementMsg, "objects", STATE)
         self.create_service(Trigger, "trigger_frame", self.trigger, callback_group=group)
@@ -48,7 +49,8 @@ class ScriptedCell(Node):
 
     def trigger(self, request, response):
         blocks = [PlanarObject(7 * i, SQUARE + (i * (0.04 + self.gap), 0.0)) for i in range(2)]
-        if not self.blind:
+        self.triggers += 1
+        if not self.blind and self.triggers > self.lost_clouds:
             self.objects.publish(conversions.arrangement_to_msg(Arrangement(blocks), self.get_clock().now().to_msg()))
         response.success = True
         return response
@@ -59,12 +61,13 @@ class ScriptedCell(Node):
         return response
 
     def execute(self, handle):
+        self.pushing.set()
         while self.slow and not handle.is_cancel_requested:
             time.sleep(0.01)
         if handle.is_cancel_requested:
             self.stood_still.set()
             handle.canceled()
-            return ExecutePush.Result(code=int(ResultCode.CANCELLED), message="stands still")
+            return ExecutePush.Result(code=int(self.cancel_code), message="scripted end of a cancelled push")
         if self.code is ResultCode.OK:
             self.gap += 0.01
             handle.succeed()
@@ -134,6 +137,53 @@ def test_a_camera_that_sends_nothing_is_no_fresh_view(setting, ask):
     expect_success(ask)
 
 
+def test_a_cloud_that_got_lost_is_asked_for_again(setting, ask):
+    setting[1].lost_clouds = 2
+    result = expect_success(ask)
+    assert len(result.outcomes) == 2
+    assert setting[1].triggers == 5  # three for the first look, one after each push
+
+
+def test_a_goal_without_a_gap_takes_the_parameters(setting, ask):
+    result = outcome(ask(min_gap=0.0))[1]
+    assert result.code == ResultCode.OK
+    assert len(result.outcomes) == 2  # 1 mm, 11 mm, 21 mm: the default lies between the last two
+    assert result.smallest_gap >= setting[0].settings.min_gap
+
+
+def test_a_cancelled_push_that_did_not_stop_well_is_not_called_cancelled(setting, ask):
+    setting[1].slow, setting[1].cancel_code = True, ResultCode.PATH_TOLERANCE
+    handle = ask()
+    wait_until(setting[1].pushing.is_set, what="a push")
+    wait_until(handle.cancel_goal_async().done, what="answer to the cancel")
+    result = outcome(handle)[1]
+    assert setting[1].stood_still.is_set()
+    assert [one.code for one in result.outcomes] == [ResultCode.PATH_TOLERANCE]
+    setting[1].slow, setting[1].cancel_code = False, ResultCode.CANCELLED
+    expect_success(ask)
+
+
+def test_a_push_that_takes_too_long_is_stopped_and_looked_at_again(ros_context):
+    quick = [Parameter(name, value=value) for name, value in (("ready_timeout", 0.5), ("execute_timeout", 1.0))]
+    node, cell = SingulateNode(context=ros_context, parameter_overrides=quick), ScriptedCell(ros_context)
+    cell.slow = True
+    with spinning(node, cell, threads=8):
+        assert node.start()
+        client = ActionClient(cell, Singulate, "singulate")
+        wait_until(client.server_is_ready, what="singulate")
+        for slow, expected in ((True, ResultCode.PUSH_FAILED), (False, ResultCode.OK)):
+            cell.slow = slow
+            future = client.send_goal_async(Singulate.Goal(max_pushes=5, min_gap=0.02))
+            wait_until(future.done, what="answer")
+            result = outcome(future.result())[1]
+            assert result.code == expected
+            if slow:
+                assert [one.code for one in result.outcomes] == [ResultCode.TIMEOUT] * 2
+                assert "was stopped" in result.outcomes[0].message
+        client.destroy()
+        cell.server.destroy()
+
+
 def test_a_fault_of_the_robot_ends_it_with_its_code(setting, ask):
     setting[1].code = ResultCode.SAFETY_STOP
     status, result = outcome(ask())
@@ -146,7 +196,7 @@ def test_a_fault_of_the_robot_ends_it_with_its_code(setting, ask):
 def test_cancelled_means_standing_still(setting, ask):
     setting[1].slow = True
     handle = ask()
-    wait_until(lambda: ask.feedback, what="first look")
+    wait_until(setting[1].pushing.is_set, what="a push")
     wait_until(handle.cancel_goal_async().done, what="answer to the cancel")
     status, result = outcome(handle)
     assert (status, result.code) == (GoalStatus.STATUS_CANCELED, ResultCode.CANCELLED)
