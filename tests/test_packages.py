@@ -20,29 +20,18 @@ PYTHON_PACKAGES = [name for name in PACKAGES if (SOURCE / name / "setup.py").exi
 ROSDEP = {
     "cv2": "python3-opencv",
     "matplotlib": "python3-matplotlib",
+    "numba": "python3-numba",
     "numpy": "python3-numpy",
     "PIL": "python3-pil",
     "psutil": "python3-psutil",
     "pytest": "python3-pytest",
     "scipy": "python3-scipy",
+    "tf2_ros": "tf2_ros_py",
     "yaml": "python3-yaml",
     "pandas": "python3-pandas",
 }
 # On PyPI only: no rosdep key; the set-up installs them from requirements/.
-WITHOUT_KEY = {
-    "coal",
-    "dask",
-    "distributed",
-    "hypothesis",
-    "numba",
-    "open3d",
-    "pinocchio",
-    "pyarrow",
-    "pymunk",
-    "rosbags",
-}
-# Asked for by name at run time where it is installed.
-OPTIONAL = {"tf2_ros"}
+WITHOUT_KEY = {"dask", "distributed", "hypothesis", "open3d", "pyarrow", "pymunk", "rosbags"}
 
 
 def imports(package):
@@ -63,7 +52,7 @@ def manifest(package):
 
 @pytest.mark.parametrize("package", PYTHON_PACKAGES)
 def test_dependencies_are_those_of_the_imports(package):
-    needed = {ROSDEP.get(name, name) for name in imports(package) - WITHOUT_KEY - OPTIONAL}
+    needed = {ROSDEP.get(name, name) for name in imports(package) - WITHOUT_KEY}
     declared = {element.text for element in manifest(package).findall("exec_depend")}
     assert needed <= declared
     assert declared - needed <= set(PACKAGES)  # beyond imports only packages whose executables are started by name

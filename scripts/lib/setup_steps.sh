@@ -107,7 +107,7 @@ colcon_build() ( # route; in a subshell, for its folder and environment
   cd "$WORKSPACE" || exit 1
   export PATH=$VENV/bin:$PATH VIRTUAL_ENV=$VENV
   [[ $1 != pypi ]] || export AMENT_PREFIX_PATH=$VENV CMAKE_PREFIX_PATH=$VENV
-  # shellcheck disable=SC2086
-  colcon build --symlink-install --event-handlers console_direct+ \
+  # Through this environment's Python, so that the executables start with it.
+  "$VENV/bin/python" -m colcon build --symlink-install --event-handlers console_direct+ \
     --cmake-args -DBUILD_TESTING=OFF -DPython3_EXECUTABLE="$VENV/bin/python" -DPython3_FIND_VIRTUALENV=ONLY
 )
