@@ -62,7 +62,10 @@ def sample(points: NDArray[np.float32], frame: FloatArray, workspace: Workspace 
             ResultCode.NO_POINTS,
             f"{valid} of {looked_at} sampled points are valid (finite and not 0 0 0); is the camera covered?",
         )
-    distance = float(np.linalg.norm(transform_points(inverse(frame), located), axis=1).mean()) if len(located) else 0.0
+    if len(located) >= _FEWEST:
+        distance = float(np.linalg.norm(transform_points(inverse(frame), located), axis=1).mean())
+    else:  # in millimetres, everything lies far outside the workspace
+        distance = _mean_distance(points[::row_step, ::column_step])
     if not (distance < _METRES_LIMIT):
         raise SingulationError(
             ResultCode.NOT_METRES,
@@ -70,6 +73,13 @@ def sample(points: NDArray[np.float32], frame: FloatArray, workspace: Workspace 
         )
     window = (*_widened(rows, 2 * row_step, height), *_widened(columns, 2 * column_step, width))
     return CloudSample(located, window, distance)
+
+
+def _mean_distance(points: NDArray[np.float32]) -> float:
+    """Of the valid ones among (..., 3) points from the camera [m]."""
+    flat = points.reshape(-1, 3).astype(np.float64)
+    valid = np.isfinite(flat).all(axis=1) & (flat != 0.0).any(axis=1)
+    return float(np.linalg.norm(flat[valid], axis=1).mean()) if valid.any() else 0.0
 
 
 def _widened(limits: tuple[int, int], margin: int, size: int) -> tuple[int, int]:

@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from singulation_perception.clustering import euclidean_clusters
+
+
+def partition(labels):
+    """Sets of indices, whatever the numbers of the labels."""
+    return {frozenset(np.flatnonzero(labels == label).tolist()) for label in np.unique(labels) if label >= 0}
+
+
+def reference(points, tolerance):
+    """Connected components of all pairs nearer than the tolerance."""
+    pairs = cKDTree(points.astype(np.float64)).query_pairs(tolerance, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
+    return partition(connected_components(graph, directed=False)[1])
+
+
+@given(st.integers(0, 10**6), st.integers(1, 300), st.floats(0.002, 0.05))
+@settings(max_examples=60, deadline=None)
+def test_the_partition_is_that_of_the_tolerance_graph(seed, count, tolerance):
+    points = np.random.default_rng(seed).uniform(-0.1, 0.1, (count, 3)).astype(np.float32)
+    labels = euclidean_clusters(points, tolerance, 1, count)
+    assert labels.shape == (count,)
+    assert labels.dtype == np.int32
+    assert partition(labels) == reference(points, tolerance)
+
+
+def test_it_agrees_with_open3d():
+    from open3d.geometry import PointCloud
+    from open3d.utility import Vector3dVector
+
+    points = np.random.default_rng(3).normal(0.0, 0.05, (2000, 3)).astype(np.float32)
+    theirs = np.asarray(PointCloud(Vector3dVector(points.astype(np.float64))).cluster_dbscan(0.006, 1))
+    assert partition(euclidean_clusters(points, 0.006, 1, 2000)) == partition(theirs)
+
+
+@pytest.mark.parametrize(("smallest", "largest", "sizes"), [(1, 99, [1, 3, 5]), (2, 99, [3, 5]), (1, 4, [1, 3])])
+def test_too_small_and_too_large_clusters_are_left_out(smallest, largest, sizes):
+    groups = [np.full((size, 3), place, dtype=np.float32) for place, size in ((0.0, 1), (1.0, 3), (2.0, 5))]
+    labels = euclidean_clusters(np.concatenate(groups), 0.01, smallest, largest)
+    assert sorted(len(part) for part in partition(labels)) == sizes
+    assert (labels == -1).sum() == 9 - sum(sizes)
