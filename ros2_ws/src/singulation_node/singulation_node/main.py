@@ -40,7 +40,6 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
     arguments = list(sys.argv if args is None else args)
     autostart = "--autostart" in arguments
     starting, stop = threading.Event(), threading.Event()
-    starting.set()
     rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     try:
         executor = MultiThreadedExecutor(num_threads=threads)
@@ -49,8 +48,7 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
         try:
             executor.add_node(node)
             wanted = isinstance(node, ManagedNode) and (autostart or node.autostart)
-            configured = not wanted or node.trigger_configure() == TransitionCallbackReturn.SUCCESS
-            starting.clear()  # configuring may take long (it compiles) and can be interrupted, activating is quick
+            configured = not wanted or _configure(node, starting, stop)
             if not configured or (wanted and node.trigger_activate() != TransitionCallbackReturn.SUCCESS):
                 return 1
             _spin(executor, node, stop)
@@ -63,7 +61,7 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
     except SingulationError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:  # a signal before the node was there
+    except KeyboardInterrupt:  # a signal before the node was ready
         return 0
     finally:
         rclpy.try_shutdown()
@@ -76,8 +74,19 @@ def plain_arguments(args: Sequence[str] | None = None) -> list[str]:
     return [item for item in arguments[1:] if item != "--autostart"]
 
 
+def _configure(node: Any, starting: threading.Event, stop: threading.Event) -> bool:
+    """Configuring may take long (it compiles), so a signal interrupts it; everything else on the way is quick."""
+    starting.set()
+    try:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        return bool(node.trigger_configure() == TransitionCallbackReturn.SUCCESS)
+    finally:
+        starting.clear()
+
+
 def _stop_on_signals(starting: threading.Event, stop: threading.Event, executor: Any) -> None:
-    """Signals end the spinning; while the node still starts (and compiles, perhaps), they end that at once."""
+    """Signals end the spinning; while the node is being configured, they end that at once."""
 
     def handle(number: int, frame: FrameType | None) -> None:
         stop.set()
