@@ -31,7 +31,8 @@ EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the demo; the exit code."""
     root = Path(os.environ.get("SINGULATION_ROOT", Path.cwd()))
-    signal.signal(signal.SIGTERM, _interrupt)
+    for number in (signal.SIGINT, signal.SIGTERM):  # also where a shell starts us with SIGINT ignored
+        signal.signal(number, _interrupt)
     try:
         options = parse(sys.argv[1:] if arguments is None else arguments, root)
         with only_demo(root / ".demo.lock"):
