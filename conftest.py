@@ -1,4 +1,4 @@
-"""For all tests: Ctrl-C works in the processes they start, also where a shell ignores it (commands in the background)."""
+"""For all tests: Ctrl-C works in the processes they start, also where a shell ignores it (background commands)."""
 
 import signal
 
