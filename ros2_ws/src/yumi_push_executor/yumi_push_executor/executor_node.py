@@ -10,41 +10,40 @@ A goal whose client is gone is finished all the same. Nothing that was stopped g
 """
 
 import sys
+import threading
 import time
 from collections.abc import Sequence
 from typing import Any
 
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from rclpy.clock import Clock, ClockType
-from sensor_msgs.msg import JointState
 from singulation_msgs.action import ExecutePush
-from singulation_msgs.msg import Arrangement, DriverState, PushOutcome, PushTrajectory
+from singulation_msgs.msg import PushOutcome, PushTrajectory
 from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, Push, ResultCode, SingulationError
-from singulation_core.conversions import arrangement_from_msg, push_from_msg, seconds_of
+from singulation_core.conversions import push_from_msg
 from singulation_node.guard import guarded, guarded_service, report_failure
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import LATCHED, STATE
 from yumi_push_executor.controllers import Controllers
 from yumi_push_executor.ending import Ending
+from yumi_push_executor.executor_diagnostics import report_executor
+from yumi_push_executor.executor_inputs import ExecutorInputs
 from yumi_push_executor.executor_settings import ExecutorSettings
 from yumi_push_executor.goal_ledger import GoalLedger
 from yumi_push_executor.kinematics.model import ARMS
-from yumi_push_executor.outcome_messages import feedback_of, outcome_of, result_of
+from yumi_push_executor.outcome_messages import Feedback, outcome_of, result_of
 from yumi_push_executor.push_execution import Outside, PushExecution
 from yumi_push_executor.push_gate import PushGate, Stamp
 from yumi_push_executor.push_planner import PushPlanner
-from yumi_push_executor.robot_view import TICK, RobotView
-from yumi_push_executor.supervision import Instant, Step, hold_arm
-from yumi_push_executor.wire_messages import driver_status_from_msg
+from yumi_push_executor.robot_view import RobotView
+from yumi_push_executor.supervision import Instant, hold_arm
 
 _REPORT_PERIOD = 1.0  # s
-_FEEDBACK_PERIOD = 0.05  # s
 _SETTLE = 0.5  # s beyond stop_timeout that a halt or a deactivation waits for
-_LOG_PERIOD = 5.0  # s between log lines about refused messages
+_SEND = 0.2  # s that rclpy may take to send a result after its callback has returned
 
 
 class ExecutorNode(ManagedNode[ExecutorSettings]):
@@ -53,12 +52,13 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
     def __init__(self, **options: Any) -> None:
         super().__init__("executor_node", ExecutorSettings, **options)
         self.ledger = GoalLedger()
-        self._simulated = bool(self.get_parameter("use_sim_time").value)
+        self._simulated = False
         self._execution: PushExecution | None = None
 
     def configure(self) -> None:
         """Load the robot model, listen to the robot, offer the action and ``halt``."""
         settings = self.settings
+        self._simulated = bool(self.get_parameter("use_sim_time").value)
         planner = self._warm_planner()
         self._view = RobotView(settings.joint_names, planner.ranges, settings.limits, self.instant)
         self._gate = PushGate(settings.max_push_age, settings.max_push_skew, settings.need_objects)
@@ -66,16 +66,10 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         outside = Outside(self._controllers.send, self.instant, self.ros_time, self._controllers.require)
         self._execution = PushExecution(self._view, self._gate, planner, outside)
         self._last_outcome = self.create_publisher(PushOutcome, "last_outcome", LATCHED)
-        # Each in a group of its own: on a busy machine the frequent joint states would else keep the others waiting.
-        states, driver, rest = (MutuallyExclusiveCallbackGroup() for _ in range(3))
-        self.create_subscription(JointState, "joint_states", self._take_states, STATE, callback_group=states)
-        self.create_subscription(DriverState, "driver_state", self._take_driver, STATE, callback_group=driver)
-        # In the group of the states: while a tick comes through, a state would have, too.
-        self.create_timer(TICK, self._view.tick, callback_group=states, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.create_subscription(Arrangement, "objects", self._take_objects, STATE, callback_group=rest)
+        self._inputs = ExecutorInputs(self, self._view, self._gate, settings.table_frame)
         self.create_service(Trigger, "halt", self._halt, callback_group=ReentrantCallbackGroup())
         self.create_service(Trigger, "clear_view", self._clear_view, callback_group=ReentrantCallbackGroup())
-        self.create_timer(_REPORT_PERIOD, self._report, callback_group=rest)
+        self.create_timer(_REPORT_PERIOD, self._report, callback_group=MutuallyExclusiveCallbackGroup())
         self._open_action(settings.result_timeout)
 
     def activate(self) -> None:
@@ -92,7 +86,9 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
             execution.idle.wait(_SETTLE)
 
     def cleanup(self) -> None:
-        """Close the action."""
+        """Close the action, once its last result is on its way."""
+        self.ledger.wait_for_none_open(_SETTLE)
+        threading.Event().wait(_SEND)
         self._server.destroy()
         self._client.destroy()
         self._execution = None
@@ -144,28 +140,25 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
             ending = Ending.failed(ResultCode.INTERNAL, f"{type(error).__name__}: {error}")
         if ending.defect is not None:
             report_failure(self, "execute_push", ending.defect)
+        self._conclude(goal, ending)
         self.ledger.end(ending.code)
+        return result_of(ending)
+
+    @guarded
+    def _conclude(self, goal: Any, ending: Ending) -> None:
+        """Say how it ended, everywhere but in the result itself, which has to get through whatever happens here."""
+        _close(goal, ending.code)
+        self._log(ending)
         if ending.code is not ResultCode.BUSY:
             self._last_outcome.publish(outcome_of(ending, goal.request.push, self.get_clock().now().to_msg()))
-        self._log(ending)
-        _close(goal, ending.code)
-        return result_of(ending)
 
     def _ending_of(self, goal: Any) -> Ending:
         execution = self._execution
         if execution is None or not self.is_active:
             return Ending.failed(ResultCode.NOT_READY, "the node is not active")
-        last = [-1, 0.0]
-
-        def on_step(step: Step) -> None:
-            now = time.monotonic()
-            if step.phase != last[0] or now - last[1] >= _FEEDBACK_PERIOD:
-                last[:] = step.phase, now
-                goal.publish_feedback(feedback_of(step))
-
-        message = goal.request.push
+        message, feedback = goal.request.push, Feedback(self, goal)
         return execution.execute(
-            lambda: self._read(message), self.settings.limits, lambda: bool(goal.is_cancel_requested), on_step
+            lambda: self._read(message), self.settings.limits, lambda: bool(goal.is_cancel_requested), feedback.tell
         )
 
     def _read(self, message: PushTrajectory) -> tuple[Push, Stamp]:
@@ -173,33 +166,6 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         if frame != self.settings.table_frame:
             raise InvalidInputError(f"push: frame {frame!r}, need {self.settings.table_frame!r}")
         return push_from_msg(message), (message.header.stamp.sec, message.header.stamp.nanosec)
-
-    @guarded
-    def _take_states(self, message: JointState) -> None:
-        delay = self.ros_time() - seconds_of(message.header.stamp)
-        try:
-            self._view.add_states(message.name, message.position, message.velocity, delay)
-        except SingulationError as error:
-            self._refused("joint_states", error)
-
-    @guarded
-    def _take_driver(self, message: DriverState) -> None:
-        try:
-            self._view.add_driver(driver_status_from_msg(message, self.instant()))
-        except SingulationError as error:
-            self._refused("driver_state", error)
-
-    @guarded
-    def _take_objects(self, message: Arrangement) -> None:
-        try:
-            if message.header.frame_id != self.settings.table_frame:
-                raise InvalidInputError(f"frame {message.header.frame_id!r}, need {self.settings.table_frame!r}")
-            stamp = message.header.stamp
-            self._gate.add((stamp.sec, stamp.nanosec), arrangement_from_msg(message))
-        except SingulationError as error:
-            self._refused("objects", error)
-        else:
-            self.diagnostics.report("objects", True, f"{len(message.objects)} objects")
 
     @guarded
     def _take_push(self, message: PushTrajectory) -> None:
@@ -240,23 +206,7 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
 
     @guarded
     def _report(self) -> None:
-        with self._view.lock:
-            fault, refused, driver = self._view.watch.fault(self.instant()), self._view.watch.refused, self._view.driver
-            messages = self._view.messages
-        text = "joint states are good" if fault is None else fault.text
-        self.diagnostics.report("joint states", fault is None, text, messages=messages, refused=refused)
-        name = "no driver state has come yet" if driver is None else f"{driver.mode.name}: {driver.message}"
-        moves = driver is not None and driver.motion_enabled
-        self.diagnostics.report("driver", moves, name)
-        counts = self.ledger.counts()
-        defects = self.ledger.ended(ResultCode.INTERNAL)
-        self.diagnostics.report("goals", defects == 0, f"{counts['received']} received", **counts)
-        problems = self._controllers.problems()
-        self.diagnostics.report("controllers", not problems, "; ".join(problems) or "connected")
-
-    def _refused(self, topic: str, error: SingulationError) -> None:
-        self.diagnostics.report(topic, False, error.message)
-        self.get_logger().warning(f"{topic}: {error}", throttle_duration_sec=_LOG_PERIOD)
+        report_executor(self.diagnostics, self._view, self.instant(), self.ledger, self._controllers)
 
     def _log(self, ending: Ending) -> None:
         text = f"push ended with {ending.code.name}: {ending.text} (planned in {1e3 * ending.planning_time:.0f} ms)"

@@ -3,18 +3,23 @@
 import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from fake_robot import HOME
+from geometry_msgs.msg import Point32, Polygon
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from node_cell import NodeCell
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 from singulation_msgs.action import ExecutePush
+from singulation_msgs.msg import Arrangement, DriverState, PlanarObject
 from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, ResultCode
-from singulation_node.testing import call, spinning, wait_until
+from singulation_node.qos import STATE
+from singulation_node.testing import Mailbox, call, spinning, wait_until
 from yumi_push_executor.executor_settings import ExecutorSettings
 from yumi_push_executor.supervision import Phase
 
@@ -133,3 +138,33 @@ def test_limits_can_be_changed_while_it_runs_and_nonsense_is_rejected(cell):
 def test_settings_that_contradict_each_other_are_refused(changes, text):
     with pytest.raises(InvalidInputError, match=text):
         ExecutorSettings(**changes)
+
+
+def test_malformed_messages_are_shown_and_the_next_good_ones_count(cell):
+    shown = Mailbox(cell.client, DiagnosticArray, "/diagnostics")
+
+    def said(name):
+        statuses = [status for message in shown.messages for status in message.status]
+        return next((status for status in reversed(statuses) if status.name == f"executor_node: {name}"), None)
+
+    square = [Point32(x=float(x), y=float(y)) for x, y in ((0, 0), (1, 0), (1, 1))]
+    clockwise = PlanarObject(id=4, outline=Polygon(points=square[::-1]))
+    header = cell.push().header
+    cell.objects.publish(Arrangement(header=header, objects=[clockwise]))
+    states = cell.client.create_publisher(JointState, "joint_states", STATE)
+    drivers = cell.client.create_publisher(DriverState, "driver_state", STATE)
+    wait_until(lambda: states.get_subscription_count() and drivers.get_subscription_count(), what="subscriptions")
+    states.publish(JointState(header=header, name=["a", "b"], position=[1.0]))
+    drivers.publish(DriverState(mode=99))
+    expected = {
+        "refused objects": "object 4: clockwise",
+        "refused joint_states": "2 names, 1 positions",
+        "refused driver_state": "mode 99",
+    }
+    for name, text in expected.items():
+        status = wait_until(lambda name=name: said(name), what=name)
+        assert text in status.message
+    require_good_push(cell)
+    good = ("joint states", "driver", "controllers", "goals", "last push", "state")
+    wait_until(lambda: all(said(name) and said(name).level == DiagnosticStatus.OK for name in good), what="good states")
+    wait_until(lambda: ("OK", "1") in [(pair.key, pair.value) for pair in said("goals").values], what="the count")
