@@ -19,6 +19,13 @@ project_root() {
 ROOT=$(project_root)
 VENV=$ROOT/.venv
 WORKSPACE=$ROOT/ros2_ws
+# scripts/test --cell-pins: an environment and a build beside the usual ones, of the same sources.
+if [[ ${SINGULATION_PINS:-} == cell ]]; then
+  VENV=$ROOT/.cell/venv
+  WORKSPACE=$ROOT/.cell/ros2_ws
+  mkdir -p "$WORKSPACE"
+  ln -sfn ../../ros2_ws/src "$WORKSPACE/src"
+fi
 export ROOT VENV WORKSPACE
 
 # "sourced" where a ROS 2 Jazzy installation is sourced, else "pypi".

@@ -50,6 +50,8 @@ ensure_system_packages() { # route
 requirement_files() { # route
   if [[ $1 == sourced ]]; then
     echo "$ROOT/requirements/cell.txt" "$ROOT/requirements/development.txt"
+  elif [[ ${SINGULATION_PINS:-} == cell ]]; then
+    echo "$ROOT/requirements/ros.txt" "$ROOT/requirements/cell_pins.txt" "$ROOT/requirements/development.txt"
   else
     echo "$ROOT/requirements/ros.txt" "$ROOT/requirements/libraries.txt" "$ROOT/requirements/development.txt"
   fi
@@ -64,8 +66,9 @@ ensure_environment() { # route
     return
   fi
   if [[ $route == sourced ]]; then python=$(find_python '3\.12'); options=(--system-site-packages)
+  elif [[ ${SINGULATION_PINS:-} == cell ]]; then python=$(find_python '3\.12')
   else python=$(find_python '3\.1[123]'); fi
-  say "making the virtual environment .venv with $python ($("$python" --version)), ROS: $route"
+  say "making the virtual environment ${VENV#"$ROOT/"} with $python ($("$python" --version)), ROS: $route"
   "$VENV/bin/python" -c 'import pip' 2>/dev/null || "$python" -m venv --clear "${options[@]}" "$VENV"
   say "installing Python packages (about 1.3 GB on disk, 1 to 3 minutes)"
   if [[ $route == pypi ]]; then
@@ -75,6 +78,8 @@ ensure_environment() { # route
   fi
   logged pip.txt "$VENV/bin/python" -m pip install --disable-pip-version-check --no-input "${constraint[@]}" \
     "${files[@]/#/-r}" || fail "pip could not install the packages; its words are above"
+  [[ ${SINGULATION_PINS:-} != cell ]] || logged pip_without_dependencies.txt "$VENV/bin/python" -m pip install --no-input --no-deps \
+    -r "$ROOT/requirements/cell_pins_without_dependencies.txt" || fail "pip could not install Pinocchio; its words are above"
   [[ $route == sourced ]] || "$VENV/bin/python" "$ROOT/scripts/lib/mend_cmake_paths.py" >&2
   printf '%s\n' "$route" >"$VENV/.route"
   rm -rf "$WORKSPACE/build" "$WORKSPACE/install"
@@ -83,8 +88,8 @@ ensure_environment() { # route
 
 build_inputs() { # what a build depends on; Python sources are linked, so their edits need none
   cd "$WORKSPACE/src" && find . \( -name package.xml -o -name 'setup.*' -o -name CMakeLists.txt -o -name '*.msg' -o -name '*.srv' \
-    -o -name '*.action' -o -path '*/launch/*' -o -path '*/config/*' -o -path '*/urdf/*' -o -path '*/rviz/*' \) -type f -print0 |
-    sort -z | xargs -0 cksum
+    -o -name '*.action' -o -path '*/launch/*' -o -path '*/config/*' -o -path '*/urdf/*' -o -path '*/rviz/*' -o -path '*/foxglove/*' \
+    -o -path '*/security/*' \) -type f -print0 | sort -z | xargs -0 cksum
 }
 
 ensure_build() { # route

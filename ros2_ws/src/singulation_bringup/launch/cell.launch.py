@@ -16,6 +16,7 @@ from launch.substitutions import (
     LaunchConfiguration,
     NotEqualsSubstitution,
     NotSubstitution,
+    OrSubstitution,
     PathJoinSubstitution,
     PythonExpression,
 )
@@ -82,6 +83,12 @@ def arguments():
             "autostart", default_value="true", choices=["true", "false"], description="configure and activate the nodes"
         ),
         DeclareLaunchArgument("rviz", default_value="false", choices=["true", "false"], description="show it in RViz"),
+        DeclareLaunchArgument(
+            "foxglove",
+            default_value="false",
+            choices=["true", "false"],
+            description="serve Foxglove on ws://localhost:8765",
+        ),
     ]
 
 
@@ -238,8 +245,8 @@ def start():
 
 
 def displays():
-    """RViz with the robot, the table and the camera in place."""
-    shown = IfCondition(LaunchConfiguration("rviz"))
+    """RViz or Foxglove with the robot, the table and the camera in place."""
+    shown = IfCondition(OrSubstitution(LaunchConfiguration("rviz"), LaunchConfiguration("foxglove")))
     urdf = PathJoinSubstitution([FindPackageShare("yumi_push_executor"), "urdf", "yumi.urdf"])
     return [
         Node(
@@ -265,7 +272,14 @@ def displays():
             name="rviz2",
             arguments=["-d", PathJoinSubstitution([SHARE, "rviz", "cell.rviz"])],
             remappings=[("points", LaunchConfiguration("points"))],
-            condition=shown,
+            condition=IfCondition(LaunchConfiguration("rviz")),
+        ),
+        Node(
+            package="foxglove_bridge",
+            executable="foxglove_bridge",
+            name="foxglove_bridge",
+            parameters=[{"address": "127.0.0.1"}],
+            condition=IfCondition(LaunchConfiguration("foxglove")),
         ),
     ]
 

@@ -31,6 +31,12 @@ def arguments():
             description="where the camera stood; the default takes the largest plane for the table",
         ),
         DeclareLaunchArgument("rviz", default_value="false", choices=["true", "false"], description="show it in RViz"),
+        DeclareLaunchArgument(
+            "foxglove",
+            default_value="false",
+            choices=["true", "false"],
+            description="serve Foxglove on ws://localhost:8765",
+        ),
     ]
 
 
@@ -88,6 +94,13 @@ def nodes():
             name="rviz2",
             arguments=["-d", PathJoinSubstitution([SHARE, "rviz", "replay.rviz"])],
             condition=IfCondition(LaunchConfiguration("rviz")),
+        ),
+        Node(
+            package="foxglove_bridge",
+            executable="foxglove_bridge",
+            name="foxglove_bridge",
+            parameters=[{"address": "127.0.0.1"}],
+            condition=IfCondition(LaunchConfiguration("foxglove")),
         ),
     ]
 

@@ -7,7 +7,13 @@ ros2 action send_goal /singulate singulation_msgs/action/Singulate "{max_pushes:
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
-from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch.substitutions import (
+    Command,
+    LaunchConfiguration,
+    OrSubstitution,
+    PathJoinSubstitution,
+    PythonExpression,
+)
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
@@ -38,6 +44,12 @@ def arguments():
             "autostart", default_value="true", choices=["true", "false"], description="configure and activate the nodes"
         ),
         DeclareLaunchArgument("rviz", default_value="false", choices=["true", "false"], description="show it in RViz"),
+        DeclareLaunchArgument(
+            "foxglove",
+            default_value="false",
+            choices=["true", "false"],
+            description="serve Foxglove on ws://localhost:8765",
+        ),
     ]
 
 
@@ -118,8 +130,8 @@ def start():
 
 
 def displays():
-    """RViz with the robot, the table and the camera in place."""
-    shown = IfCondition(LaunchConfiguration("rviz"))
+    """RViz or Foxglove with the robot, the table and the camera in place."""
+    shown = IfCondition(OrSubstitution(LaunchConfiguration("rviz"), LaunchConfiguration("foxglove")))
     urdf = PathJoinSubstitution([FindPackageShare("yumi_push_executor"), "urdf", "yumi.urdf"])
     return [
         Node(
@@ -144,7 +156,14 @@ def displays():
             name="rviz2",
             arguments=["-d", PathJoinSubstitution([SHARE, "rviz", "cell.rviz"])],
             parameters=[SIM_TIME],
-            condition=shown,
+            condition=IfCondition(LaunchConfiguration("rviz")),
+        ),
+        Node(
+            package="foxglove_bridge",
+            executable="foxglove_bridge",
+            name="foxglove_bridge",
+            parameters=[{"address": "127.0.0.1", "use_sim_time": True}],
+            condition=IfCondition(LaunchConfiguration("foxglove")),
         ),
     ]
 

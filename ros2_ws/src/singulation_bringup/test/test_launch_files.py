@@ -1,6 +1,7 @@
 """Launch files against the code: executables, names on the wire, arguments. What needs ``launch`` itself is not run."""
 
 import ast
+import functools
 import itertools
 import re
 from pathlib import Path
@@ -21,7 +22,11 @@ from singulation_bringup.commands.bring_up import parse
 from singulation_perception.replay_arguments import parse_replay
 
 SOURCE = Path(__file__).parents[2]
-FOREIGN = {("rviz2", "rviz2"), ("robot_state_publisher", "robot_state_publisher")}
+FOREIGN = {
+    ("rviz2", "rviz2"),
+    ("foxglove_bridge", "foxglove_bridge"),
+    ("robot_state_publisher", "robot_state_publisher"),
+}
 # What launch and launch_ros of Jazzy have, as far as it is used here.
 KNOWN = {
     "launch": {"LaunchDescription"},
@@ -34,6 +39,7 @@ KNOWN = {
         "LaunchConfiguration",
         "NotEqualsSubstitution",
         "NotSubstitution",
+        "OrSubstitution",
         "PathJoinSubstitution",
         "PythonExpression",
     },
@@ -68,6 +74,7 @@ def executables(package):
     return set(re.findall(r'"(\w+) = [\w.]+:main"', setup.read_text())) if setup.exists() else set()
 
 
+@functools.cache
 def names_in_code(package):
     """Every string in the sources of a package; ``{arm}`` and ``{side}`` stand for both sides."""
     found = set()
