@@ -70,7 +70,7 @@ def _joints(
     figures: Figures, motion: Motion, positions: FloatArray, velocities: FloatArray, p: MotionParameters
 ) -> None:
     arm = arm_model(motion.arm)
-    room = float(np.minimum(positions - arm.chain.lower, arm.chain.upper - positions).min())
+    room = float(np.minimum(positions - arm.chain.limits[0], arm.chain.limits[1] - positions).min())
     speed = float((np.abs(velocities) / arm.velocity).max())
     hard = float((np.abs(np.diff(velocities, axis=0)) / _STEP / np.array(p.joint_acceleration)).max(initial=0.0))
     figures.joint_room = min(figures.joint_room, room)

@@ -75,8 +75,8 @@ def _best(
 
 
 def _margin(arm: YumiArm, checker: Checker, pose: FloatArray, seed: FloatArray) -> float:
-    q = seed.copy()
-    if not (max(chain.solve(arm.chain, q, pose, seed, 40)) <= 1e-6):
+    q, *missed = chain.solve(arm.chain, seed, pose, seed, 40)
+    if not (max(missed) <= 1e-6):
         return float("nan")
     if checker.first_contact(q[None], Stage.DESCEND) is not None:
         return float("nan")

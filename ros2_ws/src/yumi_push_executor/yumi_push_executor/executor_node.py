@@ -111,7 +111,7 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
 
     def _warm_planner(self) -> PushPlanner:
         started = time.monotonic()
-        self.get_logger().info("warming up; the first time ever this compiles and takes up to half a minute")
+        self.get_logger().info("warming up; the first time ever this compiles and takes some seconds")
         planner = self.make_planner()
         planner.warm_up()
         self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")

@@ -29,7 +29,7 @@ class PushPlanner:
         self._table_from_body = inverse(self._body_from_table)
 
     def warm_up(self) -> None:
-        """Compile what a motion and a retreat need; the first time ever this takes up to half a minute."""
+        """Compile what a motion and a retreat need; the first time ever this takes some seconds."""
         for arm in ARMS:
             push = Push(np.array((0.0, 0.0)), np.array((0.03, 0.0)), ContactMode.SINGLE_POINT)
             low = plan_motion(push, cell=self._settings.cell, arms=(arm,)).segment(Phase.DESCEND).trajectory

@@ -35,12 +35,14 @@ class YumiArm:
         model = arm_model(name)
         self.name = name
         self.chain = model.chain
-        self.lower, self.upper, self.velocity = model.chain.lower, model.chain.upper, model.velocity
+        (self.lower, self.upper), self.velocity = model.chain.limits, model.velocity
         self.clear_view = CLEAR_VIEW[name]
 
     def forward(self, q: ArrayLike) -> FloatArray:
         """4x4 pose of ``tool0`` in ``yumi_body`` for (7,) angles [rad]."""
-        return chain.forward(self.chain, self.checked(q), np.empty((6, JOINTS)))
+        pose = np.eye(4)
+        pose[:3] = chain.places(self.chain, self.checked(q)[None]).poses[0]
+        return pose
 
     def tip(self, q: ArrayLike) -> FloatArray:
         """4x4 pose of the point between the finger tips in ``yumi_body``; axes parallel to ``tool0``."""
@@ -53,13 +55,11 @@ class YumiArm:
 
         A move that takes T seconds at constant joint speeds moves the tips at most at this value / T.
         """
-        return float(chain.tip_way(self.chain, start, end, TIP_OFFSET, 24))
+        return float(chain.tip_way(self.chain, start, end, TIP_OFFSET))
 
     def jacobian(self, q: ArrayLike) -> FloatArray:
         """(6, 7) Jacobian of ``tool0``, linear above angular, in ``yumi_body``."""
-        jacobian = np.empty((6, JOINTS))
-        chain.forward(self.chain, self.checked(q), jacobian)
-        return jacobian
+        return np.asarray(chain.places(self.chain, self.checked(q)[None]).jacobians[0])
 
     def inverse(self, pose: ArrayLike, seed: ArrayLike | None = None) -> FloatArray:
         """Joint angles that bring ``tool0`` to a pose, on the branch of the seed.
@@ -75,8 +75,8 @@ class YumiArm:
             SingulationError: ``UNREACHABLE`` with what is left of the error.
         """
         target = self.checked_pose(pose)
-        q = np.clip(self.checked(self.clear_view if seed is None else seed), self.lower, self.upper)
-        distance, angle = chain.solve(self.chain, q, target, q.copy(), _ITERATIONS)
+        start = np.clip(self.checked(self.clear_view if seed is None else seed), self.lower, self.upper)
+        q, distance, angle = chain.solve(self.chain, start, target, start, _ITERATIONS)
         if not (distance <= _POSITION_TOLERANCE and angle <= _ROTATION_TOLERANCE):
             where = ", ".join(f"{value:.3f}" for value in target[:3, 3])
             raise SingulationError(

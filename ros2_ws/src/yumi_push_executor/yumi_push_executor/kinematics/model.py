@@ -63,14 +63,12 @@ def arm_model(name: str) -> ArmModel:
     joints = [model.getJointId(f"yumi_rob{name[0]}_joint_{number}") for number in range(1, JOINTS + 1)]
     fingers = [model.getJointId(f"{name}_finger_{number}_joint") for number in (1, 2)]
     positions = [model.joints[joint].idx_q for joint in joints]
-    placements = [model.jointPlacements[joint] for joint in joints]
+    tool = model.frames[model.getFrameId(f"{name}_tool0")].placement
+    placements = [*(model.jointPlacements[joint] for joint in joints), tool]
     return ArmModel(
         chain=Chain(
-            rotations=_frozen([placement.rotation for placement in placements]),
-            translations=_frozen([placement.translation for placement in placements]),
-            tool=_frozen(model.frames[model.getFrameId(f"{name}_tool0")].placement.homogeneous),
-            lower=_frozen(model.lowerPositionLimit[positions]),
-            upper=_frozen(model.upperPositionLimit[positions]),
+            frames=_frozen([placement.homogeneous[:3] for placement in placements]),
+            limits=_frozen((model.lowerPositionLimit[positions], model.upperPositionLimit[positions])),
         ),
         velocity=_frozen(model.velocityLimit[positions]),
         positions=tuple(positions),

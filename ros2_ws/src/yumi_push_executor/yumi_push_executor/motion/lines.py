@@ -78,9 +78,8 @@ def solve_lines(
     rest = BRANCHES[branch][arm.name]
     closing = body_from_table[:3, :3].T @ arm.forward(rest)[:3, 0]
     heading = float(np.arctan2(closing[1], closing[0]))
-    q = rest.copy()
     pose = tool_pose(body_from_table, push.start, parameters.tip_height, heading, TIP_OFFSET)
-    distance, angle = chain.solve(arm.chain, q, pose, rest, _ITERATIONS)
+    q, distance, angle = chain.solve(arm.chain, rest, pose, rest, _ITERATIONS)
     if not (max(distance, angle) <= _MISS):
         raise SingulationError(
             ResultCode.UNREACHABLE,
@@ -124,14 +123,14 @@ def straight_line(
     profile = Trapezoid(distance, speed, parameters.linear_acceleration)
     times = profile.knots(KNOT_STEP)
     gone, rate = profile.at(times)
-    angles, rates = np.empty((len(times), 7)), np.empty((len(times), 7))
     draw = 0.0 if rest is None else _DRAW
-    worst, miss = chain.follow_line(arm.chain, q, direction, gone, q if rest is None else rest, draw, angles, rates)
-    if not (miss <= _MISS):
+    angles, rates, misses = chain.follow_line(arm.chain, q, direction, gone, q if rest is None else rest, draw)
+    worst = int(misses.argmax())  # NaN counts as the largest
+    if not (misses[worst] <= _MISS):
         raise SingulationError(
             ResultCode.UNREACHABLE,
             f"{arm.name} arm, {name}: way-point {worst} of {len(times)}, {gone[worst] * 1e3:.0f} mm along the line, is "
-            f"missed by {miss * 1e3:.1f} mm",
+            f"missed by {misses[worst] * 1e3:.1f} mm",
         )
     _require_within_limits(arm, angles, parameters.limit_margin, name)
     trajectory = Trajectory(times, angles, rates * rate[:, None])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from singulation_core.push_world.compiled.jit import compiled
+from singulation_core.jit import compiled
 from singulation_core.push_world.compiled.manifold import disc_contact, polygon_contacts, separation
 from singulation_core.push_world.compiled.solver import add_contact
 from singulation_core.push_world.compiled.types import Contacts, Scratch, Shapes, State

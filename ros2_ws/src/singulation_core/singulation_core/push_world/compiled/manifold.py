@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from singulation_core.jit import compiled
 from singulation_core.polygon import FloatArray
-from singulation_core.push_world.compiled.jit import compiled
 from singulation_core.push_world.compiled.types import Shapes, State
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from singulation_core.jit import compiled
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.island import find_contacts, pusher_gap
-from singulation_core.push_world.compiled.jit import compiled
 from singulation_core.push_world.compiled.manifold import place, separation
 from singulation_core.push_world.compiled.solver import remember, solve, warm_start
 from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State

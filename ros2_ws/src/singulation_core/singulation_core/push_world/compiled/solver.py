@@ -1,7 +1,7 @@
 """Motion of the blocks in one step: least kinetic energy under contacts with friction (projected Gauss-Seidel)."""
 
+from singulation_core.jit import compiled
 from singulation_core.polygon import FloatArray
-from singulation_core.push_world.compiled.jit import compiled
 from singulation_core.push_world.compiled.types import Contacts, Numbers, Shapes, State
 
 _STILL = 1e-6  # inner units; the solver stops when no contact corrects more

@@ -1,4 +1,4 @@
-"""How the functions of this package are compiled."""
+"""How numerical inner loops are compiled."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
