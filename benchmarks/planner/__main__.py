@@ -1,8 +1,9 @@
 """Everything that is published about the planner: tables I and II, figure 6, the authors' simulator, planning times.
 
-scripts/bench planner [--scenarios 1040] [--brute-force-scenarios 520] [--only NAME ...] [--dask ADDRESS] [--out DIR]
+scripts/bench planner [--only PART ...] [--policies NAME ...] [--scenarios 1040] [--brute-force-scenarios 520]
+                      [--dask ADDRESS] [--out FOLDER]
 
-A run that was stopped goes on where it was. Everything together takes about 40 minutes on two cores.
+A run that was stopped goes on where it was.
 """
 
 import argparse
@@ -18,7 +19,6 @@ from singulation_planner.benchmark.settings import find_setting
 from singulation_planner.policies import POLICIES
 
 _AUTHORS_FILE = Path("../shared/data/authors_simulator.jsonl.gz")
-_GEOMETRIC = [name for name in POLICIES if name != BRUTE_FORCE]
 
 
 def table_one(setting: str) -> Callable[[argparse.Namespace, Path], str]:
@@ -27,7 +27,7 @@ def table_one(setting: str) -> Callable[[argparse.Namespace, Path], str]:
     def make(options: argparse.Namespace, out: Path) -> str:
         plan = Plan(
             find_setting(setting),
-            list(POLICIES),
+            options.policies,
             scenarios=options.scenarios,
             brute_force_scenarios=options.brute_force_scenarios,
             first_seed=options.seed,
@@ -43,7 +43,7 @@ def table_two(setting: str) -> Callable[[argparse.Namespace, Path], str]:
     def make(options: argparse.Namespace, out: Path) -> str:
         plan = Plan(
             find_setting(setting),
-            _GEOMETRIC,
+            [name for name in options.policies if name != BRUTE_FORCE],
             ("single_point", "edge", "two_point", "best"),
             ("contact_mode", "every_mode"),
             scenarios=options.scenarios,
@@ -70,11 +70,13 @@ def simulators(options: argparse.Namespace, out: Path) -> str:
 
 def timing(options: argparse.Namespace, out: Path) -> str:
     """Planning times."""
-    return timing_report(sorted(POLICIES), options.timing_scenes, out)
+    return timing_report(options.policies, options.timing_scenes, out)
 
 
 PARTS: dict[str, tuple[str, Callable[[argparse.Namespace, Path], str]]] = {
     "clutter": ("Table I in touching clutter", table_one("clutter")),
+    "clutter_judged": ("Table I in touching clutter, judged by pymunk", table_one("clutter_judged")),
+    "clutter_pymunk": ("Table I in touching clutter, all by pymunk", table_one("clutter_pymunk")),
     "authors": ("Table I in the authors' setting", table_one("authors")),
     "contact_modes_clutter": ("Table II in touching clutter", table_two("clutter")),
     "contact_modes_authors": ("Table II in the authors' setting", table_two("authors")),
@@ -96,6 +98,9 @@ def main() -> int:
     except SingulationError as error:
         print(f"planner benchmark: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("planner benchmark: stopped; results so far are kept, run again to go on", file=sys.stderr)
+        return 130
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "planner.md").write_text("\n".join(texts), encoding="utf-8")
     print("\n".join(texts))
@@ -112,6 +117,14 @@ def _options() -> argparse.Namespace:
     add("--timing-scenes", type=int, default=40, help="scenes for each number of objects (default: %(default)s)")
     add("--simulator-scenes", type=int, default=48, help="60 random pushes on each (default: %(default)s)")
     add("--only", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART", help=", ".join(PARTS))
+    add(
+        "--policies",
+        nargs="+",
+        choices=list(POLICIES),
+        default=list(POLICIES),
+        metavar="NAME",
+        help=", ".join(POLICIES),
+    )
     add("--authors-file", type=Path, default=_AUTHORS_FILE, help="made with the authors' code (default: %(default)s)")
     add("--seed", type=int, default=0, help="of the first scene")
     add("--workers", type=int, default=os.cpu_count() or 1, help="processes (default: all cores)")

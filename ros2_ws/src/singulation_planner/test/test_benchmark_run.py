@@ -133,7 +133,7 @@ def test_plans_that_mean_nothing_are_refused(changes, text):
 
 
 def test_an_unknown_setting_is_refused_with_the_known_ones():
-    with pytest.raises(InvalidInputError, match="clutter, authors"):
+    with pytest.raises(InvalidInputError, match="clutter_pymunk, authors"):
         find_setting("moon")
 
 

@@ -103,5 +103,5 @@ def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
 
 
 def perform(setting: Setting, arrangement: Arrangement, push: Push) -> Arrangement:
-    """The arrangement after a push, simulated with the physics of the setting."""
-    return simulate_push(arrangement, push, setting.physics, setting.pusher)
+    """The arrangement after a push, simulated with the physics of the setting's judge."""
+    return simulate_push(arrangement, push, setting.judge or setting.physics, setting.pusher)
