@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from singulation_core.arrangement import Arrangement
 from singulation_core.contact_mode import ContactMode
 from singulation_core.errors import InvalidInputError
 from singulation_core.polygon import FloatArray
@@ -22,6 +23,7 @@ class Push:
         target_id: object to be pushed, None if none is meant.
         policy: name of the policy that planned it, "" if none did.
         expected_gain: (s' - s) / s if simulated, else NaN.
+        expected: the arrangement after the push if its policy simulated it, else None.
 
     Raises:
         InvalidInputError: not finite, no length, or a width that does not fit the mode.
@@ -34,6 +36,7 @@ class Push:
     target_id: int | None = None
     policy: str = ""
     expected_gain: float = float("nan")
+    expected: Arrangement | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", _point(self.start, "start"))

@@ -17,12 +17,16 @@ class Candidates(NamedTuple):
         directions: (m, 2) unit vectors.
         offsets: (m,) distance of the push line to the left of the centroid [m].
         gains: (m,) expected (s' - s) / s, NaN where nothing was simulated; None if nowhere.
+        values: (m,) by which pushes of different contact modes compare, larger is better; None if there is none.
+        poses: (m, n, 3) expected x, y [m] and turn [rad] of the objects of the scene; None if nothing was simulated.
     """
 
     objects: IntArray
     directions: FloatArray
     offsets: FloatArray
     gains: FloatArray | None = None
+    values: FloatArray | None = None
+    poses: FloatArray | None = None
 
 
 def through_centroid(objects: IntArray | int, directions: FloatArray) -> Candidates:

@@ -1,6 +1,7 @@
 """``plan_push``: from an arrangement to the push that a policy would do."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -16,8 +17,10 @@ from singulation_core import (
     smallest_gap,
 )
 from singulation_core import contact_mode as as_contact_mode
+from singulation_core.polygon import FloatArray
 from singulation_core.push_world.physics import PushPhysics
-from singulation_planner.best_mode import best_of_modes
+from singulation_planner.best_mode import Planned, best_of_modes
+from singulation_planner.candidates import Candidates
 from singulation_planner.placement import Placement, clearance_of
 from singulation_planner.placer import make_placer
 from singulation_planner.policies import find_policy
@@ -70,7 +73,7 @@ def plan_push(
         **options: of the policy, see its module.
 
     Returns:
-        The push; ``expected_gain`` is NaN unless the policy simulates.
+        The push; ``expected_gain`` is NaN unless the policy simulates, and so is ``expected`` None.
 
     Raises:
         SingulationError: ``NOTHING_TO_DO``, ``NO_PUSH`` (with the number of candidates refused for each reason),
@@ -84,11 +87,11 @@ def plan_push(
     travel = _travel(push_distance, push_distance_factor * scene.scale, clearance_of(placement, pusher))
     walls = workspace_walls(workspace, scene)
 
-    def plan(with_mode: ContactMode) -> Push:
+    def plan(with_mode: ContactMode, share: float = 1.0) -> Planned:
         placer = make_placer(scene, with_mode, travel, pusher, placement, walls)
-        return _first_push(chosen, Task(scene, placer, seed, physics), settings)
+        return _first_push(chosen, Task(scene, placer, seed, physics, share), settings)
 
-    return best_of_modes(plan, mode, scene, pusher, physics) if best_contact_mode else plan(mode)
+    return best_of_modes(plan, mode, scene, pusher, physics) if best_contact_mode else plan(mode).push
 
 
 def _refuse_separated(arrangement: Arrangement, min_gap: float | None) -> None:
@@ -108,13 +111,19 @@ def _travel(push_distance: float | None, after_contact: float, clearance: float)
     return float(travel)
 
 
-def _first_push(policy: Policy, task: Task, settings: Any) -> Push:
+def _first_push(policy: Policy, task: Task, settings: Any) -> Planned:
     placer = task.placer
     for candidates in policy.rank(task, settings):
         found = placer.first_feasible(candidates)
         if found is not None:
-            index, start = found
-            gain = math.nan if candidates.gains is None else float(candidates.gains[index])
-            target = int(candidates.objects[index])
-            return placer.push(target, start, candidates.directions[index], policy.name, gain)
+            return _planned(policy, task, candidates, *found)
     raise SingulationError(ResultCode.NO_PUSH, f"{policy.name}: no push is possible: {placer.why_none()}")
+
+
+def _planned(policy: Policy, task: Task, candidates: Candidates, index: int, start: FloatArray) -> Planned:
+    gain = math.nan if candidates.gains is None else float(candidates.gains[index])
+    target = int(candidates.objects[index])
+    push = task.placer.push(target, start, candidates.directions[index], policy.name, gain)
+    if candidates.poses is not None:
+        push = replace(push, expected=task.scene.displaced(candidates.poses[index]))
+    return Planned(push, math.nan if candidates.values is None else float(candidates.values[index]))

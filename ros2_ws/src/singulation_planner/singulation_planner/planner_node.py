@@ -17,7 +17,13 @@ from singulation_msgs.srv import PlanPush
 from visualization_msgs.msg import MarkerArray
 
 from singulation_core import Arrangement, ContactMode, InvalidInputError, Push, ResultCode, SingulationError
-from singulation_core.conversions import arrangement_from_msg, contact_mode_from_msg, push_to_msg, seconds_of
+from singulation_core.conversions import (
+    arrangement_from_msg,
+    arrangement_to_msg,
+    contact_mode_from_msg,
+    push_to_msg,
+    seconds_of,
+)
 from singulation_node.guard import guarded, guarded_service
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
@@ -67,19 +73,24 @@ class PlannerNode(ManagedNode[PlannerSettings]):
     def _serve(self, request: Any, response: Any) -> Any:
         settings = self.settings
         mode = contact_mode_from_msg(request.contact_mode)
-        push, seconds = self._plan(request.arrangement, settings, request.policy or settings.policy, mode)
+        policy = request.policy or settings.policy
+        push, seconds = self._plan(request.arrangement, settings, policy, mode, request.policy_options)
         response.code, response.message = int(ResultCode.OK), ""
         response.push = push_to_msg(push, request.arrangement.header)
+        if push.expected is not None:
+            response.expected = arrangement_to_msg(push.expected, request.arrangement.header.stamp)
         response.planning_time = seconds
         return response
 
-    def _plan(self, message: Any, settings: PlannerSettings, policy: str, mode: ContactMode) -> tuple[Push, float]:
+    def _plan(
+        self, message: Any, settings: PlannerSettings, policy: str, mode: ContactMode, asked: str = ""
+    ) -> tuple[Push, float]:
         """The push and the time that planning took [s]; every outcome is counted and shown."""
         push, arrangement, seconds = None, None, math.nan
         try:
             self._check_header(message.header, settings)
             arrangement = arrangement_from_msg(message)
-            options = settings.options() if policy == settings.policy else {}
+            options = settings.options(policy, asked)
             started = time.perf_counter()
             push = plan_push(arrangement, policy, mode, **settings.arguments, **options)
             seconds = time.perf_counter() - started

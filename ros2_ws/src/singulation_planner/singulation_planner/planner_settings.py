@@ -1,6 +1,6 @@
 """Parameters of ``planner_node``."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -10,10 +10,11 @@ from singulation_core.push_world.physics import PushPhysics
 from singulation_node.parameters import parameter
 from singulation_planner.placement import Placement
 from singulation_planner.plan import PUSH_DISTANCE_FACTOR
-from singulation_planner.policies import POLICIES
+from singulation_planner.policies import POLICIES, find_policy
+from singulation_planner.rollout.options import Options
 from singulation_planner.scene import OVERLAP_TOLERANCE
 
-_CELL, _JAWS, _PLACEMENT = CellGeometry(), PusherGeometry(), Placement()
+_CELL, _JAWS, _PLACEMENT, _ROLLOUT = CellGeometry(), PusherGeometry(), Placement(), Options()
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,26 @@ class PlannerSettings:
     """Parameters of ``planner_node``; lengths in metres."""
 
     policy: str = parameter("cluster_push", "how pushes are chosen", choices=tuple(sorted(POLICIES)))
-    policy_options: str = parameter("", "options of that policy: name=value, separated by spaces")
+    policy_options: str = parameter("", "further options of that policy: name=value, separated by spaces")
+    objective: str = parameter(
+        _ROLLOUT.objective, "rollout_push: what a push is to increase", choices=("singulation_distance", "clearance")
+    )
+    clearance_width: float = parameter(
+        _ROLLOUT.clearance_width,
+        "rollout_push: gap that is wide enough [m]; 0: 0.4 mean bounding radii",
+        low=0.0,
+        high=1.0,
+    )
+    budget: float = parameter(
+        _ROLLOUT.budget,
+        "rollout_push: processor time for planning [ms]; 0: no simulation",
+        low=0.0,
+        high=600000.0,
+    )
+    rollouts: int = parameter(_ROLLOUT.rollouts, "rollout_push: simulated pushes at most", low=1, high=10**9)
+    worlds: int = parameter(
+        _ROLLOUT.worlds, "rollout_push: sampled worlds in which the best pushes are judged", low=1, high=1000
+    )
     contact_mode: str = parameter(
         ContactMode.SINGLE_POINT.label,
         "how the jaws touch, for pushes planned on arrival; a request says it itself",
@@ -60,21 +80,27 @@ class PlannerSettings:
     max_future: float = parameter(0.1, "how far a stamp may lie in the future [s]", low=0.0, high=10.0)
 
     def __post_init__(self) -> None:
-        self.options()
+        self.options(self.policy)
         self.workspace_polygon()
 
-    def options(self) -> dict[str, Any]:
-        """``policy_options`` as keyword arguments.
+    def options(self, policy: str, asked: str = "") -> dict[str, Any]:
+        """Options of a policy as keyword arguments.
+
+        Args:
+            policy: its name.
+            asked: name=value, separated by spaces; they go before the parameters.
 
         Raises:
             InvalidInputError: not name=value, or not an option of the policy.
+            SingulationError: ``UNKNOWN_POLICY``.
         """
-        pairs = [item.partition("=") for item in self.policy_options.split()]
-        for name, sign, value in pairs:
-            if not (name and sign and value):
-                raise InvalidInputError(f"parameter policy_options: {name + sign + value!r}, need name=value")
-        given = {name: value for name, _, value in pairs}
-        POLICIES[self.policy].read_options(given)
+        chosen = find_policy(policy)
+        given: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(_ROLLOUT)}
+        given = given if isinstance(chosen.defaults, Options) else {}
+        if policy == self.policy:
+            given |= _pairs("parameter policy_options", self.policy_options)
+        given |= _pairs("policy_options", asked)
+        chosen.read_options(given)
         return given
 
     def workspace_polygon(self) -> FloatArray:
@@ -108,3 +134,11 @@ class PlannerSettings:
             "overlap_tolerance": self.overlap_tolerance,
             "physics": PushPhysics.named(self.physics),
         }
+
+
+def _pairs(name: str, text: str) -> dict[str, str]:
+    pairs = [item.partition("=") for item in text.split()]
+    for key, sign, value in pairs:
+        if not (key and sign and value):
+            raise InvalidInputError(f"{name}: {key + sign + value!r}, need name=value")
+    return {key: value for key, _, value in pairs}

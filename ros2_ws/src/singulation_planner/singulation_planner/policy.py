@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -23,12 +23,14 @@ class Task:
         placer: can tell which candidates are feasible, for policies that need to know before ranking.
         seed: of everything random.
         physics: of simulated pushes; None: the default preset.
+        share: of its budget that a policy may spend; less than 1 where several contact modes are planned for.
     """
 
     scene: Scene
     placer: Placer
     seed: int
     physics: PushPhysics | None = None
+    share: float = 1.0
 
     def random(self) -> np.random.Generator:
         """A fresh generator: the same numbers at each call."""
@@ -65,13 +67,13 @@ class Policy:
         """
         if not given:
             return self.defaults
-        kinds = get_type_hints(self.options)
+        kinds, lows = get_type_hints(self.options), {one.name: one.metadata.get("low") for one in fields(self.options)}
         for name in given:
             if name not in kinds:
                 valid = ", ".join(kinds) or "none"
                 raise InvalidInputError(f"policy {self.name}: unknown option {name!r}; its options: {valid}")
         return self.options(
-            **{name: _converted(f"{self.name}.{name}", kinds[name], value) for name, value in given.items()}
+            **{name: _converted(f"{self.name}.{name}", kinds[name], value, lows[name]) for name, value in given.items()}
         )
 
 
@@ -82,7 +84,8 @@ def policy(options: type[Any]) -> Callable[[Rank], Rank]:
     """Decorator: registers a ranking function under its module's name.
 
     Args:
-        options: frozen dataclass; a field is a ``Literal`` of choices, a bool, a positive int or a positive float.
+        options: frozen dataclass; a field is a ``Literal`` of choices, a bool, a positive int or a positive float (or
+            one >= 0, if its metadata say ``{"low": 0.0}``).
     """
 
     def register(rank: Rank) -> Rank:
@@ -99,7 +102,7 @@ class NoOptions:
     """For policies without options."""
 
 
-def _converted(name: str, kind: Any, value: Any) -> Any:
+def _converted(name: str, kind: Any, value: Any, low: float | None = None) -> Any:
     if get_origin(kind) is Literal:
         if value not in get_args(kind):
             raise InvalidInputError(f"option {name}: {value!r}, need one of {', '.join(map(repr, get_args(kind)))}")
@@ -111,7 +114,8 @@ def _converted(name: str, kind: Any, value: Any) -> Any:
     try:
         number = kind(value)
     except (TypeError, ValueError):
-        number = kind(0)
-    if not (0 < number < float("inf")):
-        raise InvalidInputError(f"option {name}: {value!r}, need a positive {kind.__name__}")
+        number = kind(-1)
+    if not ((number > 0 or number == low) and number < float("inf")):
+        wanted = f"a positive {kind.__name__}" if low is None else f"a finite {kind.__name__} >= {low:g}"
+        raise InvalidInputError(f"option {name}: {value!r}, need {wanted}")
     return number

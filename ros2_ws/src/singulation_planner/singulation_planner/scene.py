@@ -8,6 +8,7 @@ import numpy as np
 
 from singulation_core import Arrangement, ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
+from singulation_core.push_world.displaced import displaced
 from singulation_planner.kernels.overlap import deepest_overlap
 from singulation_planner.kernels.types import IntArray
 
@@ -74,6 +75,12 @@ class Scene:
         """The arrangement with its objects in canonical order: simulations of it cannot depend on their numbering."""
         objects = self.arrangement.objects
         return Arrangement([objects[k] for k in self.order], self.arrangement.frame, self.arrangement.stamp)
+
+    def displaced(self, poses: FloatArray) -> Arrangement:
+        """The arrangement, numbered as it came, with the objects at ``poses`` (n, 3) in canonical order."""
+        numbered = np.empty_like(poses)
+        numbered[list(self.order)] = poses
+        return displaced(self.arrangement, numbered)
 
     def object_id(self, index: int) -> int:
         """Id of the object at this place of the canonical order."""

@@ -1,0 +1,121 @@
+"""Gaps between the outlines of all blocks, as they lie and after pushes."""
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.types import IntArray
+
+
+@njit(cache=True)
+def _one_sided(corners: FloatArray, first: int, last: int, other_first: int, other_last: int) -> tuple[float, float]:
+    """Largest separation along the normals of the first outline, and squared distance of the other's vertices to it."""
+    widest, squared = -np.inf, np.inf
+    for k in range(first, last):
+        after = k + 1 if k + 1 < last else first
+        x, y = corners[k, 0], corners[k, 1]
+        ex, ey = corners[after, 0] - x, corners[after, 1] - y
+        length2 = ex * ex + ey * ey
+        nearest = np.inf
+        for m in range(other_first, other_last):
+            rx, ry = corners[m, 0] - x, corners[m, 1] - y
+            height = rx * ey - ry * ex
+            nearest = min(nearest, height)
+            along = min(1.0, max(0.0, (rx * ex + ry * ey) / length2))
+            px, py = rx - along * ex, ry - along * ey
+            squared = min(squared, px * px + py * py)
+        widest = max(widest, nearest / np.sqrt(length2))
+    return widest, squared
+
+
+@njit(cache=True)
+def outline_gap(corners: FloatArray, first: int, last: int, other_first: int, other_last: int) -> float:
+    """Distance of two convex outlines [m]; minus the depth where they overlap."""
+    one, squared = _one_sided(corners, first, last, other_first, other_last)
+    other, squared_other = _one_sided(corners, other_first, other_last, first, last)
+    deepest = max(one, other)
+    return deepest if deepest <= 0.0 else np.sqrt(min(squared, squared_other))
+
+
+@njit(cache=True)
+def _put(shapes: FloatArray, first: int, last: int, x: float, y: float, turn: float, corners: FloatArray) -> None:
+    c, s = np.cos(turn), np.sin(turn)
+    for k in range(first, last):
+        corners[k, 0] = x + c * shapes[k, 0] - s * shapes[k, 1]
+        corners[k, 1] = y + s * shapes[k, 0] + c * shapes[k, 1]
+
+
+@njit(cache=True)
+def all_gaps(corners: FloatArray, firsts: IntArray) -> FloatArray:
+    """(n, n) gaps of all pairs [m]; infinite on the diagonal."""
+    n = len(firsts) - 1
+    gaps = np.full((n, n), np.inf)
+    for i in range(n):
+        for j in range(i):
+            gaps[i, j] = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
+            gaps[j, i] = gaps[i, j]
+    return gaps
+
+
+@njit(cache=True)
+def _nearest_gaps(
+    pose: FloatArray,
+    moved: IntArray,
+    radii: FloatArray,
+    corners: FloatArray,
+    firsts: IntArray,
+    gaps: FloatArray,
+    nearest: FloatArray,
+) -> None:
+    """Lower ``nearest`` (n,) to the gap of each block to its nearest other one."""
+    n = len(radii)
+    for i in range(n):
+        for j in range(i):
+            gap = gaps[i, j]
+            if moved[i] != 0 or moved[j] != 0:
+                dx, dy = pose[i, 0] - pose[j, 0], pose[i, 1] - pose[j, 1]
+                gap = np.sqrt(dx * dx + dy * dy) - radii[i] - radii[j]
+                if gap < max(nearest[i], nearest[j]):
+                    gap = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
+            nearest[i], nearest[j] = min(nearest[i], gap), min(nearest[j], gap)
+
+
+@njit(cache=True)
+def mean_clearances(
+    outlines: FloatArray,
+    firsts: IntArray,
+    centroids: FloatArray,
+    radii: FloatArray,
+    gaps: FloatArray,
+    poses: FloatArray,
+    width: float,
+    values: FloatArray,
+) -> None:
+    """Mean over the blocks of the gap to the nearest other one, at most ``width``, in units of it.
+
+    Args:
+        outlines: (v, 2) vertices around their centroids [m].
+        firsts: (n + 1,) where each outline begins.
+        centroids, radii: (n, 2), (n,) before the pushes [m].
+        gaps: (n, n) before the pushes [m].
+        poses: (m, n, 3) x, y [m], turn [rad] after each push; NaN gives NaN.
+        width: gap beyond which nothing is gained [m].
+        values: (m,), written.
+    """
+    n = len(radii)
+    corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n, dtype=np.int64)
+    for c in range(len(poses)):
+        pose = poses[c]
+        if np.isnan(pose[0, 0]):
+            values[c] = np.nan
+            continue
+        for i in range(n):
+            way = max(abs(pose[i, 0] - centroids[i, 0]), abs(pose[i, 1] - centroids[i, 1]))
+            moved[i] = 1 if max(way, abs(pose[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0
+            _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)
+            nearest[i] = width
+        _nearest_gaps(pose, moved, radii, corners, firsts, gaps, nearest)
+        total = 0.0
+        for i in range(n):
+            total += max(0.0, nearest[i])
+        values[c] = total / (n * width)

@@ -1,0 +1,35 @@
+"""Options of the policy ``rollout_push``."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from singulation_core import InvalidInputError
+
+WIDTH = 0.4  # default of ``clearance_width`` in mean bounding radii
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What is wanted, and how much work may be spent on it.
+
+    Attributes:
+        objective: ``singulation_distance``: the largest s' (the paper's aim); ``clearance``: blocks with a gap of
+            ``clearance_width`` all around, which is what a gripper needs.
+        budget: processor time for planning [ms]; 0: no simulation, the answer is that of the score. With a budget that
+            ends the search (less than some 20 ms) the answer depends on the speed of the machine.
+        rollouts: simulated pushes at most. Unlike the budget, it gives the same push on every machine.
+        clearance_width: gap that is wide enough [m]; 0: 0.4 mean bounding radii.
+        worlds: in how many sampled worlds (poses, friction, density) the best pushes are judged; 1: in the one seen.
+    """
+
+    objective: Literal["singulation_distance", "clearance"] = "singulation_distance"
+    budget: float = field(default=1000.0, metadata={"low": 0.0})
+    rollouts: int = 160
+    clearance_width: float = field(default=0.0, metadata={"low": 0.0})
+    worlds: int = 1
+
+    def __post_init__(self) -> None:
+        for name in ("budget", "clearance_width"):
+            value = getattr(self, name)
+            if not (0.0 <= value < float("inf")):
+                raise InvalidInputError(f"rollout_push: {name} {value}, need a finite number >= 0")
