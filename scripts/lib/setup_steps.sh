@@ -116,3 +116,22 @@ colcon_build() ( # route; in a subshell, for its folder and environment
   "$VENV/bin/python" -m colcon build --symlink-install --event-handlers console_direct+ \
     --cmake-args -DBUILD_TESTING=OFF -DPython3_EXECUTABLE="$VENV/bin/python" -DPython3_FIND_VIRTUALENV=ONLY
 )
+
+kernel_sources() { # files with compiled functions
+  grep -rlE --include='*.py' '^@(njit|compiled)' "$WORKSPACE/src" | sort
+}
+
+ensure_compiled() {
+  local wanted
+  wanted="$(cat "$VENV/.stamp") $(kernel_sources | xargs cksum | cksum) $(uname -m) $(grep -m1 'model name' /proc/cpuinfo || true)"
+  [[ $(cat "$WORKSPACE/install/.compiled" 2>/dev/null) != "$wanted" ]] || return 0
+  say "compiling the numerical kernels (about a minute the first time)"
+  # Numba does not notice that a function in another file, compiled into this one, has changed.
+  find -L "$WORKSPACE/src" -name '*.nb[ic]' -delete
+  (
+    SINGULATION_ENV='' # our own environment, whatever called us
+    source "$ROOT/scripts/lib/environment.sh"
+    logged compile.txt "$VENV/bin/python" -m singulation_bringup.commands.compile_kernels
+  ) || fail "the kernels could not be compiled; the words of the compiler are above"
+  printf '%s\n' "$wanted" >"$WORKSPACE/install/.compiled"
+}

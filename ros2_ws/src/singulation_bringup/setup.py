@@ -35,6 +35,7 @@ setup(
         "console_scripts": [
             "closed_loop_benchmark = singulation_bringup.closed_loop.main:main",
             "singulate_node = singulation_bringup.singulate_node:main",
+            "compile_kernels = singulation_bringup.commands.compile_kernels:main",
             "status = singulation_bringup.commands.status:main",
             "calibrate = singulation_bringup.commands.calibrate:main",
             "bring_up = singulation_bringup.commands.bring_up:main",

@@ -1,0 +1,66 @@
+"""``compile_kernels``: compile now what every node would else compile at its first start.
+
+Numba keeps the result beside the sources, or in the user's cache folder where those cannot be written. ``scripts/setup``
+runs this; on a cell that is built in another way run it once after each update.
+"""
+
+import multiprocessing
+import os
+import sys
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+
+
+def _perception() -> None:
+    from singulation_perception import warm_up
+
+    warm_up()
+
+
+def _planner() -> None:
+    from singulation_planner import warm_up
+
+    warm_up()
+
+
+def _executor() -> None:
+    from yumi_push_executor.executor_settings import ExecutorSettings
+    from yumi_push_executor.push_planner import PushPlanner
+
+    PushPlanner(ExecutorSettings()).warm_up()
+
+
+def _camera() -> None:
+    from singulation_sim.camera import warm_up
+
+    warm_up()
+
+
+# The longest first, so that two cores end at about the same time.
+ROOMS: Mapping[str, Callable[[], None]] = {
+    "perception": _perception,
+    "planner": _planner,
+    "executor": _executor,
+    "simulated camera": _camera,
+}
+
+
+def main() -> int:
+    """Compile every room in a process of its own, as many at once as there are cores; the exit code."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(os.cpu_count(), mp_context=context) as pool:
+        for done in as_completed([pool.submit(_timed, room) for room in ROOMS]):
+            room, seconds = done.result()
+            print(f"{room}: ready after {seconds:.1f} s", flush=True)
+    return 0
+
+
+def _timed(room: str) -> tuple[str, float]:
+    started = time.monotonic()
+    ROOMS[room]()
+    return room, time.monotonic() - started
+
+
+if __name__ == "__main__":
+    sys.exit(main())
