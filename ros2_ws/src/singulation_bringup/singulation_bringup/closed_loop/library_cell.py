@@ -54,7 +54,7 @@ class LibraryCell:
         Raises:
             SingulationError: with perception's code.
         """
-        with self.stopwatch.timed("simulate"):
+        with self.stopwatch.timed("render"):
             view = self.simulation.view()
             self.simulation.run(self._setting.scan_time)
             cloud = self.simulation.render(view)
@@ -106,12 +106,13 @@ class LibraryCell:
             except SingulationError:
                 self.refused += 1
                 raise
-        try:
-            self.robot.perform(motion.segments)
-        except SingulationError as stop:
-            if stop.code in LOOK_AGAIN:
-                self.robot.leave_view(self._seen)
-            raise
+        with self.stopwatch.timed("moving"):
+            try:
+                self.robot.perform(motion.segments)
+            except SingulationError as stop:
+                if stop.code in LOOK_AGAIN:
+                    self.robot.leave_view(self._seen)
+                raise
 
     def check_cancelled(self) -> None:
         """Raise ``CANCELLED`` if the client has given up."""
