@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,8 @@ from singulation_core.polygon import FloatArray
 from yumi_push_executor.clearance.scene import Margins, Pair, Scene
 from yumi_push_executor.clearance.shapes import Kind
 from yumi_push_executor.kinematics.model import arm_model, robot
+
+_CHANGING = (Kind.FINGER_BLOCK, Kind.FINGER_TABLE, Kind.MOVED_BLOCKS)  # from stage to stage
 
 
 class Stage(Enum):
@@ -56,23 +57,27 @@ class Checker:
         for name, angles in postures.items():
             self._q[list(arm_model(name).positions)] = angles
         self._q[list(arm_model(scene.arm).fingers)] = 0.5 * opening
-        self._stages: dict[Stage, Any] = {}
+        self._geometry_data = pin.GeometryData(scene.geometry)
+        sizes = margins.by_kind()
+        for request, pair in zip(self._geometry_data.collisionRequests, scene.pairs, strict=True):
+            request.security_margin = sizes[pair.kind]
+        self._changing = [(k, pair) for k, pair in enumerate(scene.pairs) if pair.kind in _CHANGING]
+        self._stage: Stage | None = None
         self.checked = 0  # postures so far
 
     def first_contact(self, postures: FloatArray, stage: Stage) -> tuple[int, Contact] | None:
         """Index of the first of (n, 7) postures that is not clear, and what is in its way; None if all are."""
-        data = self._stage(stage)
+        data = self._enter(stage)
         for index, posture in enumerate(postures):
             self._q[self._positions] = posture
             self.checked += 1
             if pin.computeCollisions(self._model, self._data, self._scene.geometry, data, self._q, True):
-                pair = next(k for k, one in enumerate(data.collisionResults) if one.isCollision())
-                return index, self._contact(data, pair)
+                return index, self._contact(data, self._first_pair())
         return None
 
     def smallest_slack(self, posture: FloatArray, stage: Stage) -> tuple[float, Contact]:
         """Distance minus margin of the pair that is nearest to being in the way [m], and that pair."""
-        data = self._stage(stage)
+        data = self._enter(stage)
         self._q[self._positions] = posture
         pin.computeDistances(self._model, self._data, self._scene.geometry, data, self._q)
         slack = np.array([one.min_distance for one in data.distanceResults])
@@ -81,34 +86,40 @@ class Checker:
         worst = int(slack.argmin())
         return float(slack[worst]), self._contact(data, worst)
 
-    @cached_property
-    def _sizes(self) -> dict[Kind, float]:
-        return self._margins.by_kind()
+    def _first_pair(self) -> int:
+        """The pair found by the check just made; those switched off may still carry the result of another stage."""
+        data = self._geometry_data
+        found = zip(data.activeCollisionPairs, data.collisionResults, strict=True)
+        return next(k for k, (active, result) in enumerate(found) if active and result.isCollision())
 
-    def _stage(self, stage: Stage) -> Any:
+    def _enter(self, stage: Stage) -> Any:
         """Pinocchio's working data with the margins and exceptions of a stage."""
-        if stage not in self._stages:
-            data = pin.GeometryData(self._scene.geometry)
-            for k, pair in enumerate(self._scene.pairs):
-                if not self._counts(pair, stage):
+        data = self._geometry_data
+        if stage is not self._stage:
+            margins, requests = self._margins_in(stage), data.collisionRequests
+            for k, pair in self._changing:
+                requests[k].security_margin = margins[pair.kind]
+                if self._counts(pair, stage):
+                    data.activateCollisionPair(k)
+                else:
                     data.deactivateCollisionPair(k)
-                data.collisionRequests[k].security_margin = self._margin(pair, stage)
-            self._stages[stage] = data
-        return self._stages[stage]
+            self._stage = stage
+        return data
 
-    def _margin(self, pair: Pair, stage: Stage) -> float:
-        if pair.kind is Kind.FINGER_BLOCK and stage in (Stage.DESCEND, Stage.PUSH):
-            return self._margins.descent
-        if pair.kind is Kind.FINGER_TABLE and stage in (Stage.DESCEND, Stage.PUSH, Stage.LEAVE):
-            return self._margins.finger_table
-        return self._sizes[pair.kind]
+    def _margins_in(self, stage: Stage) -> dict[Kind, float]:
+        margins = self._margins.by_kind()
+        if stage in (Stage.DESCEND, Stage.PUSH):
+            margins[Kind.FINGER_BLOCK] = self._margins.descent
+        if stage in (Stage.DESCEND, Stage.PUSH, Stage.LEAVE):
+            margins[Kind.FINGER_TABLE] = self._margins.finger_table
+        return margins
 
     def _counts(self, pair: Pair, stage: Stage) -> bool:
         if pair.kind is Kind.MOVED_BLOCKS:
             return stage is Stage.CLEAR
         if pair.kind is Kind.FINGER_BLOCK:
             return stage is not Stage.LEAVE and not (stage is Stage.PUSH and pair.block in self._scene.touched)
-        return True
+        return True  # fingers and table
 
     def _contact(self, data: Any, pair: int) -> Contact:
         geometry = self._scene.geometry
