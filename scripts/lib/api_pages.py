@@ -6,6 +6,7 @@ Usage: python api_pages.py FOLDER
 import importlib
 import pkgutil
 import sys
+import warnings
 from pathlib import Path
 
 PACKAGES = (
@@ -40,6 +41,8 @@ def main() -> None:
     for package in PACKAGES:
         load_lazy_names(package)
     pdoc.render.configure(docformat="google", footer_text="units: SI, frames: see README.md")
+    # A package without __all__ brings its modules along.
+    warnings.filterwarnings("ignore", message="The module specification")
     modules = [name for package in PACKAGES for name in public_modules(package)]
     pdoc.pdoc(*modules, output_directory=Path(sys.argv[1]))
 
