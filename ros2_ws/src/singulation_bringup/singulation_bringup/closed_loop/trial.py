@@ -10,7 +10,8 @@ from typing import Any
 
 from singulation_bringup.closed_loop.library_cell import LibraryCell
 from singulation_bringup.closed_loop.setting import CellSetting
-from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop, SingulationResult
+from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop
+from singulation_bringup.singulation_progress import SingulationResult
 from singulation_core import Arrangement, contact_mode, singulation_distance, smallest_gap
 from singulation_perception import warm_up as warm_perception
 from singulation_planner import warm_up as warm_planner
