@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from singulation_core import SingulationError
 from singulation_core.polygon import FloatArray
 from singulation_core.transforms import transform_points
-from singulation_perception import SegmentationParameters
+from singulation_perception import segment_cloud
 from singulation_perception.cloud_files import read_cloud_file
 from singulation_perception.clustering import euclidean_clusters
 from singulation_perception.decoding import decode_points
-from singulation_perception.table_plane import find_table
 
 TOLERANCES = (0.002, 0.003, 0.005)
 _CAMERA_NOISE = 0.010  # m, tolerance that suits the noise of time-of-flight and infrared-pattern cameras
@@ -62,8 +61,7 @@ def recorded_points(path: Path) -> NDArray[np.float32]:
     cloud = read_cloud_file(path)
     points = decode_points(cloud.data, cloud.layout)
     try:
-        image = points if points.ndim == 3 else points[None]
-        pose = find_table(image, SegmentationParameters()).table_from_camera
+        pose = segment_cloud(points).table.table_from_camera
     except SingulationError:
         flat = points.reshape(-1, 3)
         return flat[np.isfinite(flat).all(axis=1)]

@@ -19,6 +19,7 @@ from singulation_perception.decoding import decode_points
 _LABELS = "label"
 _FIRST_OBJECT = 20  # labels below it are table and ground in the recorded clouds of this kind
 _PARTS = 10  # labels of one object
+_TALLEST = 0.6  # m; recorded scenes are not of our blocks
 
 
 def draw_synthetic(out: Path) -> list[Path]:
@@ -55,12 +56,13 @@ def _recorded(cloud_path: Path, path: Path) -> Path:
     figure, axes = plt.subplots(1, 3, figsize=(19, 5.2))
     background = _shaded(points)
     try:
-        seen = segment_cloud(points)
+        seen = segment_cloud(points, SegmentationParameters(max_height=_TALLEST))
     except SingulationError as error:
         axes[0].set_title(f"refused: {error.code.name}")
     else:
         draw_image(axes[0], seen.labels, background)
-        axes[0].set_title(f"{cloud_path.stem}: {len(seen.arrangement)} objects found")
+        left_out = ", ".join(f"{reason} {count}" for reason, count in seen.dropped.items() if count)
+        axes[0].set_title(f"{cloud_path.stem}: {len(seen.arrangement)} objects; left out: {left_out or 'nothing'}")
         draw_table(axes[2], points, seen)
     truth = _labels(cloud)
     if truth is not None:
