@@ -75,7 +75,6 @@ def timing(options: argparse.Namespace, out: Path) -> str:
 
 PARTS: dict[str, tuple[str, Callable[[argparse.Namespace, Path], str]]] = {
     "clutter": ("Table I in touching clutter", table_one("clutter")),
-    "clutter_judged": ("Table I in touching clutter, judged by pymunk", table_one("clutter_judged")),
     "clutter_pymunk": ("Table I in touching clutter, all by pymunk", table_one("clutter_pymunk")),
     "authors": ("Table I in the authors' setting", table_one("authors")),
     "contact_modes_clutter": ("Table II in touching clutter", table_two("clutter")),

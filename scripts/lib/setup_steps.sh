@@ -29,9 +29,24 @@ libX11.so.6 libx11-6
 LIST
 }
 
+test_packages() { # for tests only: the page of a run is looked at in a browser
+  local name
+  for name in chromium chromium-browser google-chrome; do
+    if command -v "$name" >/dev/null; then return; fi
+  done
+  echo chromium
+}
+
+ensure_test_packages() { # without them all but a few tests can run
+  (install_packages "$(test_packages)") || say "going on without; the tests that need it will fail"
+}
+
 ensure_system_packages() { # route
-  local missing command
-  missing=$(needed_packages "$1" | tr '\n' ' ')
+  install_packages "$(needed_packages "$1" | tr '\n' ' ')"
+}
+
+install_packages() { # names, separated by blanks
+  local missing=$1 command
   [[ -n ${missing// /} ]] || return 0
   command="apt-get update && apt-get install -y --no-install-recommends ${missing% }"
   if [[ $SYSTEM_PACKAGES == install ]] && command -v apt-get >/dev/null; then

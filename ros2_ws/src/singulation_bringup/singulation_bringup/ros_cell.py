@@ -15,6 +15,7 @@ from singulation_msgs.msg import Arrangement as ArrangementMsg
 from singulation_msgs.srv import PlanPush
 from std_srvs.srv import Trigger
 
+from singulation_bringup.policy_choice import options_towards
 from singulation_core import Arrangement, ContactMode, Push, ResultCode, SingulationError, conversions
 from singulation_node.guard import guarded
 from singulation_node.qos import STATE
@@ -103,14 +104,18 @@ class RosCell:
         self._headers = {id(seen): message}
         return seen
 
-    def plan(self, seen: Arrangement, policy: str, mode: ContactMode) -> Push:
+    def plan(self, seen: Arrangement, policy: str, mode: ContactMode, min_gap: float) -> Push:
         """The planner's answer.
 
         Raises:
             SingulationError: with the planner's code.
         """
+        options = options_towards(policy, min_gap)
         request = PlanPush.Request(
-            arrangement=self._headers[id(seen)], policy=policy, contact_mode=conversions.contact_mode_to_msg(mode)
+            arrangement=self._headers[id(seen)],
+            policy=policy,
+            contact_mode=conversions.contact_mode_to_msg(mode),
+            policy_options=" ".join(f"{name}={value}" for name, value in options.items()),
         )
         answer = self._await(self._planner.call_async(request), self._timeouts.plan, "plan_push")
         _require_ok(answer)

@@ -10,22 +10,18 @@ from singulation_msgs.action import Singulate
 from singulation_msgs.msg import PushOutcome
 from std_msgs.msg import Header
 
+from singulation_bringup.policy_choice import DEFAULT_MIN_GAP, DEFAULT_POLICY, FALLBACK_POLICIES
 from singulation_bringup.ros_cell import CellTimeouts, RosCell
-from singulation_bringup.singulation_loop import (
-    DEFAULT_MIN_GAP,
-    FALLBACK_POLICIES,
-    Outcome,
-    Progress,
-    SingulationGoal,
-    SingulationLoop,
-    SingulationResult,
-)
+from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop
+from singulation_bringup.singulation_progress import Outcome, Progress, SingulationResult
+from singulation_bringup.timed_cell import TimedCell
 from singulation_core import ResultCode, SingulationError, conversions
 from singulation_node.guard import guarded, report_failure
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.parameters import parameter
 from singulation_node.qos import LATCHED
+from singulation_planner import POLICIES
 
 _RESULT_TIMEOUT = 900  # s that a result is kept for a client that asks late
 
@@ -38,6 +34,9 @@ class SingulateSettings:
     view_delay: float = parameter(0.0, "a cloud is fresh this long after the last motion [s]", low=0.0, high=10.0)
     min_gap: float = parameter(
         DEFAULT_MIN_GAP, "gap that counts as separated if a goal says 0 [m]", low=0.0001, high=1.0
+    )
+    policy: str = parameter(
+        DEFAULT_POLICY, "how pushes are chosen if a goal names no policy", choices=tuple(sorted(POLICIES))
     )
     fallback_policies: tuple[str, ...] = parameter(
         FALLBACK_POLICIES, "policies asked in turn when the planned push cannot be performed"
@@ -139,7 +138,7 @@ class SingulateNode(ManagedNode[SingulateSettings]):
         goal = SingulationGoal(
             int(request.max_pushes),
             float(request.min_gap) or self.settings.min_gap,
-            request.policy,
+            request.policy or self.settings.policy,
             conversions.contact_mode_from_msg(request.contact_mode),
             self.settings.fallback_policies,
         )
@@ -154,7 +153,18 @@ class SingulateNode(ManagedNode[SingulateSettings]):
                 published += 1
             handle.publish_feedback(_feedback(progress))
 
-        return SingulationLoop(cell, goal, lambda progress: report(self, progress)).run()
+        timed = TimedCell(cell)
+        try:
+            return SingulationLoop(timed, goal, lambda progress: report(self, progress)).run()
+        finally:
+            self._report_stages(timed)
+
+    def _report_stages(self, timed: TimedCell) -> None:
+        """Said at once, so that whoever waits for the result has it too."""
+        counts = {f"{name} count": stage.count for name, stage in timed.stages.items()}
+        seconds = {f"{name} [s]": stage.seconds for name, stage in timed.stages.items()}
+        self.diagnostics.report("stages", True, "wall time of the last goal", **counts, **seconds)
+        self.diagnostics.publish()
 
     def _report_goals(self, text: str) -> None:
         self.diagnostics.report("goals", True, text, **self._goals)

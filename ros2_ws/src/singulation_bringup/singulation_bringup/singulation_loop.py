@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
+from singulation_bringup.policy_choice import DEFAULT_POLICY
+from singulation_bringup.singulation_progress import Outcome, Progress, SingulationResult
 from singulation_bringup.tracking import Tracked, Tracker
 from singulation_core import (
     Arrangement,
@@ -24,8 +26,8 @@ class Cell(Protocol):
     def look(self) -> Arrangement:
         """A view taken after everything asked before has come to rest."""
 
-    def plan(self, seen: Arrangement, policy: str, mode: ContactMode) -> Push:
-        """The push that the policy proposes."""
+    def plan(self, seen: Arrangement, policy: str, mode: ContactMode, min_gap: float) -> Push:
+        """The push that the policy proposes to bring the blocks ``min_gap`` [m] apart."""
 
     def execute(self, push: Push) -> None:
         """Perform the push."""
@@ -41,66 +43,16 @@ class SingulationGoal:
     Args:
         max_pushes: at most this many pushes.
         min_gap: smallest gap between any two outlines to call them separated [m].
-        policy: name of the policy, "" for the planner's own choice.
+        policy: name of the policy.
         contact_mode: how to touch.
         fallback_policies: asked in this order when a planned push cannot be performed.
     """
 
     max_pushes: int
     min_gap: float
-    policy: str = ""
+    policy: str = DEFAULT_POLICY
     contact_mode: ContactMode = ContactMode.SINGLE_POINT
     fallback_policies: Sequence[str] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """One push that was tried: exactly one code, the arrangements before and after."""
-
-    push: Push
-    code: ResultCode
-    message: str
-    before: Arrangement
-    after: Arrangement
-    distance_before: float
-    distance_after: float
-
-
-@dataclass(slots=True)
-class Progress:
-    """How far it is.
-
-    Args:
-        outcomes: of the pushes so far.
-        distances, gaps, counts: s(A), smallest gap [m] and number of blocks before the first push and after each one.
-        lost: lasting ids of blocks that are no longer seen.
-    """
-
-    outcomes: list[Outcome] = field(default_factory=list)
-    distances: list[float] = field(default_factory=list)
-    gaps: list[float] = field(default_factory=list)
-    counts: list[int] = field(default_factory=list)
-    lost: set[int] = field(default_factory=set)
-
-    def repeat_last_look(self) -> None:
-        """Nothing new was seen."""
-        self.distances.append(self.distances[-1])
-        self.gaps.append(self.gaps[-1])
-        self.counts.append(self.counts[-1])
-
-    def forget_last_look(self) -> None:
-        """Another look takes its place."""
-        for values in (self.distances, self.gaps, self.counts):
-            values.pop()
-
-
-@dataclass(frozen=True, slots=True)
-class SingulationResult:
-    """How it ended."""
-
-    code: ResultCode
-    message: str
-    progress: Progress
 
 
 # What the planner or the executor refuses because of this very push; another push may do.
@@ -125,11 +77,6 @@ LOOK_AGAIN = {
 # What the planner cannot work on may be an unlucky look.
 _DOUBTFUL_LOOK = {ResultCode.STALE_INPUT, ResultCode.OVERLAPPING_OBJECTS}
 _MAX_FAILURES_IN_A_ROW = 2
-
-# What a finger needs to come down between two blocks: 12 mm wide at its tip, and it may stand at any heading [m].
-DEFAULT_MIN_GAP = 0.012
-# Asked in this order when a planned push cannot be performed.
-FALLBACK_POLICIES = ("min_overlap", "center_object_removal", "cluster_diffusion", "boundary_shear")
 
 ProgressCallback = Callable[[Progress], None]
 
@@ -173,7 +120,7 @@ class SingulationLoop:
                 return self._end(gap, pushes)
             if pushes >= self._goal.max_pushes:
                 return ResultCode.MAX_PUSHES_REACHED, (
-                    f"smallest gap {1e3 * gap:.1f} mm after {pushes} pushes, need {1e3 * self._goal.min_gap:.1f} mm"
+                    f"smallest gap {1e3 * gap:.1f} mm after {_pushes(pushes)}, need {1e3 * self._goal.min_gap:.1f} mm"
                 )
             failure = self._push_and_look()
             failures = 0 if failure is None else failures + 1
@@ -243,18 +190,18 @@ class SingulationLoop:
         for policy in dict.fromkeys((self._goal.policy, *self._goal.fallback_policies)):
             self._cell.check_cancelled()
             try:
-                push = self._cell.plan(self._seen, policy, self._goal.contact_mode)
+                push = self._cell.plan(self._seen, policy, self._goal.contact_mode, self._goal.min_gap)
             except SingulationError as error:
                 if error.code not in _TRY_ANOTHER:
                     raise
-                refusals.append(f"{policy or 'default policy'}: {error}")
+                refusals.append(f"{policy}: {error}")
                 continue
             try:
                 self._cell.execute(push)
             except SingulationError as error:
                 if error.code not in _TRY_ANOTHER:
                     return push, error
-                refusals.append(f"{policy or 'default policy'}: {error}")
+                refusals.append(f"{policy}: {error}")
                 continue
             return push, None
         raise SingulationError(ResultCode.NO_HELPFUL_PUSH, "; ".join(refusals))
@@ -298,4 +245,8 @@ def _separated(count: int, gap: float, pushes: int) -> str:
     if count == 1:
         return "nothing to do: one object"
     gap_text = "apart" if math.isinf(gap) else f"smallest gap {1e3 * gap:.1f} mm"
-    return f"{count} objects separated, {gap_text}, after {pushes} pushes"
+    return f"{count} objects separated, {gap_text}, after {_pushes(pushes)}"
+
+
+def _pushes(count: int) -> str:
+    return f"{count} push" if count == 1 else f"{count} pushes"

@@ -34,6 +34,7 @@ class ScriptedCell(Node):
         self.gap, self.blind, self.code, self.slow = 0.001, False, ResultCode.OK, False
         self.stood_still, self.pushing = threading.Event(), threading.Event()
         self.lost_clouds, self.triggers, self.cancel_code = 0, 0, ResultCode.CANCELLED
+        self.asked = []
         group = ReentrantCallbackGroup()
         self.objects = self.create_publisher(ArrangementMsg, "objects", STATE)
         self.create_service(Trigger, "trigger_frame", self.trigger, callback_group=group)
@@ -56,7 +57,8 @@ class ScriptedCell(Node):
         return response
 
     def plan(self, request, response):
-        push = Push((-0.02, 0.02), (0.02, 0.02), ContactMode.SINGLE_POINT, target_id=7, policy=request.policy or "own")
+        push = Push((-0.02, 0.02), (0.02, 0.02), ContactMode.SINGLE_POINT, target_id=7, policy=request.policy)
+        self.asked.append((request.policy, request.policy_options))
         response.push = conversions.push_to_msg(push, Header(frame_id="table", stamp=request.arrangement.header.stamp))
         return response
 
@@ -122,7 +124,8 @@ def test_it_singulates_and_tells_every_push(setting, ask):
     assert len(result.outcomes) == 2
     assert len(result.singulation_distance) == 3
     assert result.smallest_gap == pytest.approx(0.021, abs=1e-6)
-    assert outcomes.wait(2).push.policy == "own"
+    assert outcomes.wait(2).push.policy == "rollout_push"
+    assert setting[1].asked[0] == ("rollout_push", "objective=clearance clearance_width=0.022")
     assert outcomes.messages[0].push.target_id == 1  # lasting id of perception's 7
     assert outcomes.messages[0].singulation_distance_after > outcomes.messages[0].singulation_distance_before
     assert [message.pushes_done for message in ask.feedback] == sorted(m.pushes_done for m in ask.feedback)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from singulation_bringup.policy_choice import DEFAULT_POLICY
 from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop
 from singulation_core import Arrangement, ContactMode, PlanarObject, Push, ResultCode, SingulationError
 
@@ -24,7 +25,7 @@ class ScriptedCell:
     def look(self):
         return row(self.gap, self.count)
 
-    def plan(self, seen, policy, mode):
+    def plan(self, seen, policy, mode, min_gap):
         self.asked.append(policy)
         self._stumble(self.plan_faults)
         return Push((-0.02, 0.02), (0.02, 0.02), mode, 0.0, target_id=0, policy=policy)
@@ -83,7 +84,7 @@ def test_a_refused_motion_asks_the_next_policy(code):
     cell = ScriptedCell(faults=[code])
     result, _ = run(cell)
     assert result.code is ResultCode.OK
-    assert cell.asked[:2] == ["", "second"]
+    assert cell.asked[:2] == [DEFAULT_POLICY, "second"]
     assert result.progress.outcomes[0].push.policy == "second"
 
 

@@ -17,16 +17,18 @@ class CellGeometry:
     The table and its workspace are the lab's bin (corners x 0.23..0.55, y -0.22..0.20 at z = 0.04 in ``yumi_body``),
     with the frame ``table`` in its middle. The camera hangs 0.9 m above, looks down at the middle, and its image has
     the far side of the table on top.
+
+    Args:
+        table_position: origin of ``table`` in ``yumi_body``; z = 0 of ``table`` is the surface.
+        table_quaternion: orientation of ``table`` in ``yumi_body``.
+        workspace: where blocks may lie and pushes may go, x_min, x_max, y_min, y_max in ``table`` [m].
+        camera_position: of ``phoxi_camera_sensor`` in ``table``.
+        camera_quaternion: orientation of ``phoxi_camera_sensor`` (optical) in ``table``.
     """
 
     table_position: tuple[float, float, float] = (0.39, -0.01, 0.04)
     table_quaternion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
-    workspace: tuple[float, float, float, float] = (
-        -0.16,
-        0.16,
-        -0.21,
-        0.21,
-    )  # x_min, x_max, y_min, y_max in table
+    workspace: tuple[float, float, float, float] = (-0.16, 0.16, -0.21, 0.21)
     camera_position: tuple[float, float, float] = (-0.9 * float(np.tan(_TILT)), 0.0, 0.9)
     camera_quaternion: tuple[float, float, float, float] = (
         float(-np.cos(_TILT / 2) / np.sqrt(2)),

@@ -22,6 +22,9 @@ class ContactMode(IntEnum):
 def contact_mode(value: "ContactMode | int | str") -> ContactMode:
     """Contact mode from its number or name.
 
+    Args:
+        value: 0, 1, 2, or a label in any case.
+
     Raises:
         SingulationError: ``UNKNOWN_CONTACT_MODE``, listing the valid ones.
     """

@@ -78,6 +78,14 @@ class PusherGeometry:
     Defaults from measurements of the SmartGripper's fingers: a closed pair is 12.4 mm by 12 mm at the tip. A single
     point is the disc around it, so that a start that is free for the disc is free for the jaws at any yaw; the planar
     side is 12.4 mm wide and 12 mm thick.
+
+    Args:
+        tip_radius: of the disc of a single point.
+        edge_width: of the jaws' planar side.
+        edge_thickness: of the jaws behind that side.
+
+    Raises:
+        InvalidInputError: a length that is not finite and positive.
     """
 
     tip_radius: float = 0.0087

@@ -47,7 +47,11 @@ def pair_distances(points: FloatArray) -> FloatArray:
 def smallest_gap(arrangement: Arrangement) -> float:
     """Smallest gap between the outlines of any two objects [m].
 
-    Negative where outlines overlap (penetration depth); infinite for fewer than two objects.
+    Args:
+        arrangement: any number of objects.
+
+    Returns:
+        Negative where outlines overlap (penetration depth); infinite for fewer than two objects.
     """
     objects = arrangement.objects
     centres, radii = arrangement.centroids, arrangement.bounding_radii

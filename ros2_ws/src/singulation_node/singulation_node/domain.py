@@ -10,7 +10,11 @@ _DOMAINS = range(1, 100)  # above 101 the ports of DDS collide with ephemeral on
 
 @contextlib.contextmanager
 def reserved_domain() -> Iterator[int]:
-    """A ROS domain id that nobody else on this machine reserves as long as the block runs."""
+    """A ROS domain id that nobody else on this machine reserves as long as the block runs.
+
+    Raises:
+        RuntimeError: all of them are in use.
+    """
     for domain in _DOMAINS:
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as holder:
             try:

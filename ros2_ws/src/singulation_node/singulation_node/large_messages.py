@@ -53,7 +53,11 @@ def prepare_for_large_messages() -> bool:
 
 
 def segment_size() -> int:
-    """Shared memory that the profile takes for each process [bytes]."""
+    """Shared memory that the profile takes for each process [bytes].
+
+    Raises:
+        ValueError: the profile does not say.
+    """
     found = ElementTree.parse(PROFILE).getroot().find(".//{*}segment_size")
     if found is None or found.text is None:
         raise ValueError(f"{PROFILE}: no segment_size")

@@ -5,10 +5,10 @@ from pathlib import Path
 from singulation_perception.compiled_caches import drop_stale_caches
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.segmentation import Segmentation, segment, segment_cloud
+from singulation_perception.surfaces import connected_runs
 from singulation_perception.table_plane import TablePlane
-from singulation_perception.union_find import find_root
 from singulation_perception.warming import warm_up
 
 __all__ = ["Segmentation", "SegmentationParameters", "TablePlane", "segment", "segment_cloud", "warm_up"]
 
-drop_stale_caches(Path(__file__).parent, Path(find_root.stats.cache_path))
+drop_stale_caches(Path(__file__).parent, Path(connected_runs.stats.cache_path))

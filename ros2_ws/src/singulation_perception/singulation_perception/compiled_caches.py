@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def drop_stale_caches(sources: Path, caches: Path) -> int:
-    """Removes compiled functions older than the newest source file of the package.
+    """Removes compiled functions older than the newest source file that has any.
 
     Args:
         sources: folder of the package.
@@ -17,7 +17,9 @@ def drop_stale_caches(sources: Path, caches: Path) -> int:
     Returns:
         How many files were removed. What may not be removed stays.
     """
-    newest = max((file.stat().st_mtime for file in sources.glob("*.py")), default=0.0)
+    newest = max(
+        (file.stat().st_mtime for file in sources.glob("*.py") if b"@compiled" in file.read_bytes()), default=0.0
+    )
     removed = 0
     for file in (*caches.glob("*.nbi"), *caches.glob("*.nbc")):
         try:

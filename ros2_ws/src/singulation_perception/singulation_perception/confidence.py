@@ -4,12 +4,13 @@ The factors are judgements, not probabilities; what counts is their order: an ou
 one without. A confidence below one half says: do not rely on this outline.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled
 
 _USUAL_SUPPORT = 0.9  # share of the outline with points; corners never have them
 _USUAL_FILL = 0.8
@@ -51,14 +52,14 @@ class Evidence:
         return float(value)
 
 
-@njit(cache=True)
+@compiled
 def supported_share(outline: FloatArray, ring: FloatArray, reach: float, pitch: float) -> float:
     """Share of the length of an outline with points of a ring within ``reach`` [m]."""
     supported, total = 0, 0
     for k in range(len(outline)):
         j = k + 1 if k + 1 < len(outline) else 0
         x, y = outline[j, 0] - outline[k, 0], outline[j, 1] - outline[k, 1]
-        length = np.sqrt(x * x + y * y)
+        length = math.sqrt(x * x + y * y)
         x, y = x / max(length, 1e-12), y / max(length, 1e-12)
         places = max(1, int(length / (3.0 * pitch)))
         seen = np.zeros(places, dtype=np.int64)

@@ -1,14 +1,14 @@
 """Area that two convex outlines share, compiled: neighbours are compared in every cloud."""
 
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import edges_of
+from singulation_perception.jit import compiled
 from singulation_perception.rings import ring_area
 
 
-@njit(cache=True)
+@compiled
 def shared_area(one: FloatArray, two: FloatArray) -> float:
     """Area of the intersection of two convex counter-clockwise outlines [m^2] (Sutherland and Hodgman 1974)."""
     room = len(one) + len(two) + 2

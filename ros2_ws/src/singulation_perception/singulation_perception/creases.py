@@ -4,11 +4,13 @@ Concave corners are the usual trace of touching blocks. Where two blocks are flu
 narrower than the point spacing still costs points along the seam, and unequal heights leave a step.
 """
 
+import math
+
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage, to_table
+from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
 
 _FEWEST = 8  # missing points of a groove
@@ -32,7 +34,7 @@ def groove_line(image: FaceImage, pitch: float) -> FloatArray | None:
     return line
 
 
-@njit(cache=True)
+@compiled
 def _holes(point: IntArray) -> FloatArray:
     """(h, 2) rows and columns of pixels without a point between the first and the last point of row and column."""
     rows, columns = point.shape
@@ -57,27 +59,27 @@ def _holes(point: IntArray) -> FloatArray:
     return holes[:count]
 
 
-@njit(cache=True)
+@compiled
 def _best_line(places: FloatArray, pairs: IntArray, width: float) -> tuple[FloatArray, int, float]:
     """Line through two places with most places near it, how many, and how far apart the outermost are."""
     best = np.zeros(3)
     most, extent = 0, 0.0
     for k in range(len(pairs)):
-        a, b = places[pairs[k, 0]], places[pairs[k, 1]]
-        ux, uy = b[0] - a[0], b[1] - a[1]
-        length = np.sqrt(ux * ux + uy * uy)
+        ax, ay = places[pairs[k, 0], 0], places[pairs[k, 0], 1]
+        ux, uy = places[pairs[k, 1], 0] - ax, places[pairs[k, 1], 1] - ay
+        length = math.sqrt(ux * ux + uy * uy)
         if length < 4.0 * width:
             continue
         ux, uy = ux / length, uy / length
         count, low, high = 0, 0.0, 0.0
         for i in range(len(places)):
-            x, y = places[i, 0] - a[0], places[i, 1] - a[1]
+            x, y = places[i, 0] - ax, places[i, 1] - ay
             if abs(x * uy - y * ux) < width:
                 t = x * ux + y * uy
                 count, low, high = count + 1, min(low, t), max(high, t)
         if count > most:
             most, extent = count, high - low
-            best[0], best[1], best[2] = uy, -ux, uy * a[0] - ux * a[1]
+            best[0], best[1], best[2] = uy, -ux, uy * ax - ux * ay
     return best, most, extent
 
 

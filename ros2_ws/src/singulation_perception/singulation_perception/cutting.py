@@ -1,9 +1,11 @@
 """Cutting a ring in two along a seam, and what a cut is worth."""
 
+import math
+
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale, concave_area, hull_indices, least_width, ring_area
 
@@ -13,7 +15,7 @@ _SMALLEST = 40.0  # square pitches, of a piece
 _PER_AREA = 1.0 / 0.003  # [1/m] concave outline of 3 mm depth costs its length
 
 
-@njit(cache=True)
+@compiled
 def seam_line(
     ring: FloatArray,
     cut: FloatArray,
@@ -33,14 +35,15 @@ def seam_line(
     for edge in (int(cut[4]), int(cut[5])):
         if edge < 0 or not fitted[edge]:
             continue
-        a, b = ring[index[edge]], ring[index[edge + 1 if edge + 1 < len(index) else 0]]
-        line = lines[edge]
-        steps = max(2, min(len(ring), int(np.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) / scale.pitch)))
+        a, b = index[edge], index[edge + 1 if edge + 1 < len(index) else 0]
+        ax, ay, bx, by = ring[a, 0], ring[a, 1], ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
+        nx, ny, offset = lines[edge, 0], lines[edge, 1], lines[edge, 2] + scale.growth
+        steps = max(2, min(len(ring), int(math.sqrt(bx * bx + by * by) / scale.pitch)))
         for step in range(steps):
             f = 0.1 + 0.8 * step / (steps - 1)
-            x, y = a[0] + f * (b[0] - a[0]), a[1] + f * (b[1] - a[1])
-            off = line[2] + scale.growth - line[0] * x - line[1] * y
-            points[count, 0], points[count, 1] = x + off * line[0], y + off * line[1]
+            x, y = ax + f * bx, ay + f * by
+            off = offset - nx * x - ny * y
+            points[count, 0], points[count, 1] = x + off * nx, y + off * ny
             count += 1
     cx, cy = 0.0, 0.0
     for k in range(count):
@@ -49,14 +52,14 @@ def seam_line(
     for k in range(count):
         x, y = points[k, 0] - cx, points[k, 1] - cy
         xx, xy, yy = xx + x * x, xy + x * y, yy + y * y
-    angle = 0.5 * np.arctan2(2.0 * xy, xx - yy)
-    ux, uy = np.cos(angle), np.sin(angle)
+    angle = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    ux, uy = math.cos(angle), math.sin(angle)
     if ux * (ring[j, 0] - ring[i, 0]) + uy * (ring[j, 1] - ring[i, 1]) < 0.0:
         ux, uy = -ux, -uy
     return cx, cy, ux, uy
 
 
-@njit(cache=True)
+@compiled_part
 def piece(
     ring: FloatArray,
     first: int,
@@ -77,18 +80,19 @@ def piece(
     cx, cy, ux, uy = line[0], line[1], line[2] * sense, line[3] * sense
     size = len(ring)
     steps = (last - first) % size + 1
-    a, b = ring[last], ring[first]
-    start = (a[0] - cx) * ux + (a[1] - cy) * uy
-    stop = (b[0] - cx) * ux + (b[1] - cy) * uy
+    ax, ay, bx, by = ring[last, 0], ring[last, 1], ring[first, 0], ring[first, 1]
+    start = (ax - cx) * ux + (ay - cy) * uy
+    stop = (bx - cx) * ux + (by - cy) * uy
+    stray = _STRAY * scale.pitch
     seam = max(2, min(4 * size, int(abs(stop - start) / scale.pitch)))
     out = np.empty((steps + seam, 2))
     count = 0
     for k in range(steps):
-        p = ring[(first + k) % size]
-        left = (p[1] - cy) * ux - (p[0] - cx) * uy
-        near = min((p[0] - a[0]) ** 2 + (p[1] - a[1]) ** 2, (p[0] - b[0]) ** 2 + (p[1] - b[1]) ** 2)
-        if left >= 0.0 or near > (_STRAY * scale.pitch) ** 2:
-            out[count, 0], out[count, 1] = p[0], p[1]
+        i = (first + k) % size
+        x, y = ring[i, 0], ring[i, 1]
+        near = min((x - ax) * (x - ax) + (y - ay) * (y - ay), (x - bx) * (x - bx) + (y - by) * (y - by))
+        if (y - cy) * ux - (x - cx) * uy >= 0.0 or near > stray * stray:
+            out[count, 0], out[count, 1] = x, y
             count += 1
     for k in range(1, seam):
         t = start + (stop - start) * k / seam
@@ -97,7 +101,7 @@ def piece(
     return out[:count]
 
 
-@njit(cache=True)
+@compiled
 def both_pieces(
     ring: FloatArray, i: int, j: int, line: tuple[float, float, float, float], scale: Scale
 ) -> tuple[FloatArray, FloatArray]:
@@ -105,13 +109,13 @@ def both_pieces(
     return piece(ring, j, i, line, 1.0, scale), piece(ring, i, j, line, -1.0, scale)
 
 
-@njit(cache=True)
+@compiled
 def concave_cost(ring: FloatArray, roughness: float) -> float:
     """What a ring costs that is left as it is [m]: 0 if it is convex but for its roughness."""
     return concave_area(ring, hull_indices(ring), roughness) * _PER_AREA
 
 
-@njit(cache=True)
+@compiled
 def estimated(
     ring: FloatArray,
     cuts: FloatArray,
@@ -134,7 +138,7 @@ def estimated(
         width, left = np.inf, 0.0
         for first, last in ((i, j), (j, i)):
             part = _corner_piece(ring, index, first, last)
-            if len(part) < 3 or ring_area(part) < _SMALLEST * scale.pitch**2:
+            if len(part) < 3 or ring_area(part) < _SMALLEST * scale.pitch * scale.pitch:
                 width = -1.0
                 break
             hull = hull_indices(part)
@@ -147,7 +151,7 @@ def estimated(
     return costs
 
 
-@njit(cache=True)
+@compiled_part
 def _corner_piece(ring: FloatArray, index: IntArray, first: int, last: int) -> FloatArray:
     """Corners of a ring from one point to another, both included."""
     size = len(ring)
@@ -170,14 +174,14 @@ def _corner_piece(ring: FloatArray, index: IntArray, first: int, last: int) -> F
     return part[: count + 1]
 
 
-@njit(cache=True)
+@compiled_part
 def _corner_pockets(part: FloatArray, hull: IntArray, roughness: float) -> float:
     """As ``concave_area``, for a polygon of few corners."""
     total = 0.0
     for k in range(len(hull)):
         first, last = hull[k], hull[k + 1 if k + 1 < len(hull) else 0]
         x, y = part[last, 0] - part[first, 0], part[last, 1] - part[first, 1]
-        length = np.sqrt(x * x + y * y)
+        length = math.sqrt(x * x + y * y)
         area, depth, bx, by = 0.0, 0.0, 0.0, 0.0
         for step in range(1, (last - first) % len(part) + 1):
             i = (first + step) % len(part)
@@ -190,18 +194,18 @@ def _corner_pockets(part: FloatArray, hull: IntArray, roughness: float) -> float
     return total
 
 
-@njit(cache=True)
+@compiled
 def left_concave(first: FloatArray, second: FloatArray, scale: Scale) -> float:
     """What remains concave in two pieces [m]; infinite if one of them is too small to be a block."""
     left = 0.0
     for part in (first, second):
-        if len(part) < _FEWEST or ring_area(part) < _SMALLEST * scale.pitch**2:
+        if len(part) < _FEWEST or ring_area(part) < _SMALLEST * scale.pitch * scale.pitch:
             return np.inf
         left += concave_cost(part, scale.roughness)
     return left
 
 
-@njit(cache=True)
+@compiled
 def chord(ring: FloatArray, nx: float, ny: float, offset: float) -> tuple[int, int]:
     """Points of the ring at the ends of the longest piece of the line n . p = offset inside it; -1, -1 if outside.
 
@@ -228,7 +232,7 @@ def chord(ring: FloatArray, nx: float, ny: float, offset: float) -> tuple[int, i
     return first, last
 
 
-@njit(cache=True)
+@compiled
 def along(ring: FloatArray, i: int, j: int, nx: float, ny: float, offset: float) -> tuple[float, float, float, float]:
     """Point and unit direction, from point i to point j, of the line n . p = offset."""
     sense = 1.0 if (ring[j, 1] - ring[i, 1]) * nx - (ring[j, 0] - ring[i, 0]) * ny > 0.0 else -1.0

@@ -120,7 +120,7 @@ class FaceBlocks:
                 return True
         if self.view.cloud is None:
             return False
-        rows, columns = self.view.cloud.shape[:2]
+        rows, columns = self.view.cloud.height, self.view.cloud.width
         top, bottom, left, right = self.faces.box[self.maps.faces[k]]
         return bool(min(top, left) < _BORDER or bottom > rows - _BORDER or right > columns - _BORDER)
 

@@ -1,15 +1,15 @@
 """The rims of faces as rings in the plane of the table, with their measures."""
 
+import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
-from singulation_perception.rings import concave_area, hull_indices, least_width, ring_area
+from singulation_perception.rings import concave_area, hull_indices, least_width
 
 _SMALLEST_AREA = 1e-9  # [m^2] what has less is a line
 _ROUGH_PITCHES, _ROUGH_NOISE = 2.5, 8.0
@@ -77,33 +77,27 @@ def _obliqueness(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray, camer
     return np.asarray(np.hypot(way[:, 0], way[:, 1]) / np.maximum(np.abs(way[:, 2]), 1e-3))
 
 
-@njit(cache=True)
+@compiled
 def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple[FloatArray, IntArray, FloatArray]:
     points = np.empty((len(rim), 2))
     pixels = np.empty((len(rim), 2), dtype=np.int32)
     area = np.empty(len(begin) - 1)
     for k in range(len(begin) - 1):
         first, last = begin[k], begin[k + 1]
+        double = 0.0
+        for i in range(first + 1, last):
+            a, b = rim[i - 1, 0], rim[i, 0]
+            x, y = np.float64(xyz[a, 0] - xyz[rim[first, 0], 0]), np.float64(xyz[a, 1] - xyz[rim[first, 0], 1])
+            double += x * (xyz[b, 1] - xyz[a, 1]) - y * (xyz[b, 0] - xyz[a, 0])
+        area[k] = 0.5 * abs(double)
         for i in range(first, last):
-            points[i, 0], points[i, 1] = xyz[rim[i, 0], 0], xyz[rim[i, 0], 1]
-            pixels[i, 0], pixels[i, 1] = rim[i, 1], rim[i, 2]
-        area[k] = ring_area(points[first:last])
-        if area[k] < 0.0:
-            area[k] = -area[k]
-            for i in range((last - first) // 2):
-                _swap(points, first + i, last - 1 - i)
-                _swap(pixels, first + i, last - 1 - i)
+            at = i if double >= 0.0 else first + last - 1 - i
+            points[at, 0], points[at, 1] = xyz[rim[i, 0], 0], xyz[rim[i, 0], 1]
+            pixels[at, 0], pixels[at, 1] = rim[i, 1], rim[i, 2]
     return points, pixels, area
 
 
-@njit(cache=True)
-def _swap(rows: NDArray[Any], one: int, two: int) -> None:
-    a, b = rows[one, 0], rows[one, 1]
-    rows[one, 0], rows[one, 1] = rows[two, 0], rows[two, 1]
-    rows[two, 0], rows[two, 1] = a, b
-
-
-@njit(cache=True)
+@compiled
 def _measures(
     points: FloatArray, begin: IntArray, area: FloatArray, roughness: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -114,7 +108,8 @@ def _measures(
         if len(hull) > 2:
             length = 0.0
             for i in range(len(ring)):
-                length += np.sqrt((ring[i, 0] - ring[i - 1, 0]) ** 2 + (ring[i, 1] - ring[i - 1, 1]) ** 2)
+                x, y = ring[i, 0] - ring[i - 1, 0], ring[i, 1] - ring[i - 1, 1]
+                length += math.sqrt(x * x + y * y)
             width[k] = least_width(ring, hull)
             thickness[k] = 2.0 * area[k] / length
             concave[k] = concave_area(ring, hull, roughness[k])

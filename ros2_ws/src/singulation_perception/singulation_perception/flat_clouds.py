@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from singulation_perception.clustering import euclidean_clusters
+from singulation_perception.jit import compiled
 from singulation_perception.object_points import FIRST, START, STOP, IntArray, ObjectPoints
 from singulation_perception.parameters import SegmentationParameters
 
@@ -60,9 +60,11 @@ def flat_cloud(seen: ObjectPoints, parameters: SegmentationParameters, step: flo
     clusters = euclidean_clusters(seen.xyz, tolerance, parameters.min_size, parameters.max_size)
     kept = clusters >= 0
     cell, shape = _cells(seen.xyz, kept, _SPACINGS_PER_CELL * spacing)
-    xyz, runs, cluster = _drawn(seen.xyz, clusters, cell, shape[0], shape[1], np.float32(step))
+    xyz, runs, spans, cluster = _drawn(seen.xyz, clusters, cell, shape[0], shape[1], np.float32(step))
     place = _places(seen.runs, len(seen.xyz))
-    return FlatCloud(ObjectPoints(xyz, runs, seen.outside), cluster, shape, cell, place, int(np.count_nonzero(~kept)))
+    return FlatCloud(
+        ObjectPoints(xyz, runs, spans, seen.outside), cluster, shape, cell, place, int(np.count_nonzero(~kept))
+    )
 
 
 def point_spacing(xyz: Points) -> float:
@@ -92,17 +94,18 @@ def _cells(xyz: Points, kept: NDArray[np.bool_], size: float) -> tuple[NDArray[n
     return cell, (rows, columns)
 
 
-@njit(cache=True)
+@compiled
 def _drawn(
     xyz: Points, clusters: IntArray, cell: NDArray[np.int64], rows: int, columns: int, step: np.float32
-) -> tuple[Points, IntArray, IntArray]:
-    """Highest point of each cell, the runs of them, and the cluster of each run."""
+) -> tuple[Points, IntArray, Points, IntArray]:
+    """Highest point of each cell, the runs of them, their heights, and the cluster of each run."""
     best = np.full(rows * columns, -1, dtype=np.int32)
     for i in range(len(xyz)):
         if cell[i] >= 0 and (best[cell[i]] < 0 or xyz[i, 2] > xyz[best[cell[i]], 2]):
             best[cell[i]] = i
     points = np.empty((len(xyz), 3), dtype=np.float32)
     runs = np.empty((len(xyz), 4), dtype=np.int32)
+    spans = np.empty((len(xyz), 2), dtype=np.float32)
     cluster = np.empty(len(xyz), dtype=np.int32)
     count, run, before = 0, -1, -1
     for at in range(rows * columns):
@@ -112,15 +115,17 @@ def _drawn(
             if new or abs(xyz[before, 2] - xyz[i, 2]) > step:
                 run += 1
                 runs[run, 0], runs[run, 1], runs[run, 3] = at // columns, at % columns, count
+                spans[run, 0], spans[run, 1] = xyz[i, 2], xyz[i, 2]
                 cluster[run] = clusters[i]
             runs[run, 2] = at % columns + 1
-            points[count] = xyz[i]
+            spans[run, 0], spans[run, 1] = min(spans[run, 0], xyz[i, 2]), max(spans[run, 1], xyz[i, 2])
+            points[count, 0], points[count, 1], points[count, 2] = xyz[i, 0], xyz[i, 1], xyz[i, 2]
             count += 1
         before = i
-    return points[:count], runs[: run + 1], cluster[: run + 1]
+    return points[:count], runs[: run + 1], spans[: run + 1], cluster[: run + 1]
 
 
-@njit(cache=True)
+@compiled
 def _places(runs: IntArray, count: int) -> IntArray:
     places = np.empty(count, dtype=np.int32)
     for run in range(len(runs)):

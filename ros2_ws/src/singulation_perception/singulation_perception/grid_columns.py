@@ -1,10 +1,10 @@
 """Grid of cells for Euclidean clustering: (x, y) columns, each with a short sorted list of z cells."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from singulation_core import InvalidInputError
+from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.union_find import find_root, numbered_roots, single_sets, unite
 
 IntArray = NDArray[np.int32]
@@ -57,7 +57,7 @@ def columns_of(cloud: Cloud, tolerance: float) -> Columns:
     return *_in_order(cloud, key, depth, starts), starts, neighbours
 
 
-@njit(cache=True)
+@compiled
 def _dense_keys(cloud: Cloud, low: NDArray[np.float64], scale: float, width: int) -> tuple[IntArray, IntArray]:
     key = np.empty(len(cloud), dtype=np.int32)
     depth = np.empty(len(cloud), dtype=np.int32)
@@ -75,7 +75,7 @@ def _wide_keys(cloud: Cloud, low: NDArray[np.float64], scale: float, width: int)
     return (cells[:, 1] + _PAD) * width + cells[:, 0] + _PAD, cells[:, 2].astype(np.int32)
 
 
-@njit(cache=True)
+@compiled
 def _occupied(key: IntArray, columns: int) -> tuple[IntArray, IntArray]:
     """Number of each occupied column (-1 elsewhere) and the first point of each in column order."""
     slot = np.zeros(columns, dtype=np.int32)
@@ -95,7 +95,7 @@ def _occupied(key: IntArray, columns: int) -> tuple[IntArray, IntArray]:
     return slot, starts[: count + 1]
 
 
-@njit(cache=True)
+@compiled
 def _dense_neighbours(slot: IntArray, count: int, offsets: NDArray[np.int64]) -> IntArray:
     neighbours = np.empty((count, len(offsets)), dtype=np.int32)
     for column in range(len(slot)):
@@ -111,7 +111,7 @@ def _sought_neighbours(kept: NDArray[np.int64], offsets: NDArray[np.int64]) -> I
     return np.where(kept[place] == wanted, place, -1).astype(np.int32)
 
 
-@njit(cache=True)
+@compiled
 def _in_order(cloud: Cloud, key: IntArray, depth: IntArray, starts: IntArray) -> tuple[Cloud, IntArray, IntArray]:
     """Points sorted by column and, within a column, by z cell."""
     following = starts[:-1].copy()
@@ -130,7 +130,7 @@ def _in_order(cloud: Cloud, key: IntArray, depth: IntArray, starts: IntArray) ->
     return points, cells, places
 
 
-@njit(cache=True)
+@compiled
 def link_cells(
     points: Cloud, depth: IntArray, places: IntArray, starts: IntArray, neighbours: IntArray, squared: np.float32
 ) -> IntArray:
@@ -157,7 +157,7 @@ def link_cells(
     return components
 
 
-@njit(cache=True)
+@compiled_part
 def _cells(depth: IntArray, starts: IntArray) -> tuple[IntArray, IntArray, IntArray]:
     """Cell of every point, first point of every cell, first cell of every column."""
     cell = np.empty(len(depth), dtype=np.int32)
@@ -176,7 +176,7 @@ def _cells(depth: IntArray, starts: IntArray) -> tuple[IntArray, IntArray, IntAr
     return cell, first[: count + 1], cell_of_column
 
 
-@njit(cache=True)
+@compiled_part
 def _link_within(
     points: Cloud,
     depth: IntArray,
@@ -196,7 +196,7 @@ def _link_within(
             unite(parent, a, b)
 
 
-@njit(cache=True)
+@compiled_part
 def _touch(points: Cloud, a: int, a_end: int, b: int, b_end: int, squared: np.float32) -> bool:
     for i in range(a, a_end):
         for j in range(b, b_end):

@@ -1,16 +1,15 @@
 """Parts of a face that the camera cannot see because something taller stands in the way."""
 
+import math
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from numba import njit, types
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.cloud_sample import ANY_CLOUD
+from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
+from singulation_perception.raster import Raster
 from singulation_perception.rings import hull_indices, pocket_depths
 
 _COVERED = 0.5  # share of a pocket filled by something taller that may lie on the block
@@ -27,12 +26,12 @@ class View:
     Args:
         camera: (3,) its place in ``table`` [m].
         plane: (4,) of the table in the camera frame.
-        cloud: (H, W, 3), camera frame, to tell hidden from empty; None if the cloud has no image order.
+        cloud: as the camera sees it, to tell hidden from empty; None if the cloud has no image order.
     """
 
     camera: FloatArray
     plane: FloatArray
-    cloud: NDArray[np.float32] | None
+    cloud: Raster | None
 
 
 def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: View, height: float) -> FloatArray:
@@ -61,7 +60,7 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
         around = np.arange(int(first), int(last) + 1) % len(ring)
         pocket = np.ascontiguousarray(pixels[around])
         low, high = np.float32(height - roughness), np.float32(height + roughness)
-        lower, covered, taller, inside, near, level = _compiled()(view.cloud, plane, pocket, low, high, _AROUND)
+        lower, covered, taller, inside, near, level = _look(view.cloud, plane, pocket, low, high, _AROUND)
         hidden = lower < _SEEN_LOWER * inside and taller > _TALLER * near
         tall_enough = depth < reach * (level - height) + 2.0 * roughness
         if hidden and (tall_enough or covered > _COVERED * inside):
@@ -69,18 +68,9 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
     return np.asarray(ring[keep])
 
 
-@lru_cache(maxsize=1)
-def _compiled() -> Any:
-    return njit(
-        types.Tuple((*[types.int64] * 5, types.float64))(
-            ANY_CLOUD, types.float32[::1], types.int32[:, ::1], types.float32, types.float32, types.int64
-        ),
-        cache=True,
-    )(_look)
-
-
+@compiled
 def _look(
-    cloud: NDArray[np.float32],
+    cloud: Raster,
     plane: NDArray[np.float32],
     pocket: IntArray,
     low: np.float32,
@@ -90,12 +80,12 @@ def _look(
     """Points lower inside a pocket, taller inside, taller in and around it, pixels inside and around; mean height of
     the taller.
     """
-    top, left, bottom, right = cloud.shape[0], cloud.shape[1], 0, 0
+    top, left, bottom, right = cloud.height, cloud.width, 0, 0
     for i in range(len(pocket)):
         top, bottom = min(top, pocket[i, 0]), max(bottom, pocket[i, 0] + 1)
         left, right = min(left, pocket[i, 1]), max(right, pocket[i, 1] + 1)
-    top, bottom = max(0, top - around), min(cloud.shape[0], bottom + around)
-    left, right = max(0, left - around), min(cloud.shape[1], right + around)
+    top, bottom = max(0, top - around), min(cloud.height, bottom + around)
+    left, right = max(0, left - around), min(cloud.width, right + around)
     inside_row = np.empty(right - left + 1, dtype=np.int32)
     lower, covered, taller, inside, total = 0, 0, 0, 0, 0.0
     for row in range(top, bottom):
@@ -105,14 +95,15 @@ def _look(
             r, q = pocket[i, 0], pocket[i - 1, 0]
             if (r > row) != (q > row):
                 crossing = pocket[i, 1] + (row - r) * (pocket[i - 1, 1] - pocket[i, 1]) / (q - r)
-                inside_row[max(0, min(right, int(np.ceil(crossing))) - left)] ^= 1
+                inside_row[max(0, min(right, math.ceil(crossing)) - left)] ^= 1
         within = 0
         for column in range(left, right):
             within ^= inside_row[column - left]
             inside += within
-            a, b, c = cloud[row, column, 0], cloud[row, column, 1], cloud[row, column, 2]
+            at = row * cloud.row_step + column * cloud.point_step
+            a, b, c = cloud.numbers[at], cloud.numbers[at + 1], cloud.numbers[at + 2]
             level = a * plane[0] + b * plane[1] + c * plane[2] + plane[3]
-            if np.isfinite(level) and not (a == 0.0 and b == 0.0 and c == 0.0):
+            if math.isfinite(level) and not (a == 0.0 and b == 0.0 and c == 0.0):
                 if level > high:
                     taller += 1
                     covered += within

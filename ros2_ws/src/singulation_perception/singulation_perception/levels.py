@@ -1,9 +1,9 @@
 """The heights at which a surface is flat: peaks in the histogram of its points."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.object_points import FIRST, START, STOP, IntArray
 
 Points = NDArray[np.float32]
@@ -15,7 +15,7 @@ _PROMINENCE = 2.5  # a wall is as dense on both sides of a window as in it
 _TAIL, _TAIL_REACH = 0.04, 32  # share of a peak that its own tails can hold, and bins up to which they count
 
 
-@njit(cache=True)
+@compiled
 def levels_of(
     xyz: Points,
     runs: IntArray,
@@ -64,7 +64,7 @@ def levels_of(
     return first, levels[:count]
 
 
-@njit(cache=True)
+@compiled_part
 def _runs_by_surface(surface: IntArray, count: int) -> tuple[IntArray, IntArray]:
     begin = np.zeros(count + 1, dtype=np.int32)
     for one in surface:
@@ -79,7 +79,7 @@ def _runs_by_surface(surface: IntArray, count: int) -> tuple[IntArray, IntArray]
     return order, begin
 
 
-@njit(cache=True)
+@compiled_part
 def _peaks(histogram: IntArray, width: float, min_size: int, levels: NDArray[np.float64]) -> int:
     """Writes the heights of the levels of a histogram and says how many there are."""
     free = np.empty(len(histogram), dtype=np.int32)  # 0 near a peak that was looked at
@@ -106,7 +106,7 @@ def _peaks(histogram: IntArray, width: float, min_size: int, levels: NDArray[np.
     return count
 
 
-@njit(cache=True)
+@compiled_part
 def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) -> int:
     """Turns heights into limits: sorted, near ones joined, half way between others that would overlap."""
     if count == 0:
@@ -134,7 +134,7 @@ def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) 
     return kept
 
 
-@njit(cache=True)
+@compiled_part
 def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
     """Most points in a window, those near earlier peaks left out, and the first bin of that window."""
     best, low, window = 0, 0, 0
@@ -148,7 +148,7 @@ def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
     return best, low
 
 
-@njit(cache=True)
+@compiled_part
 def _sum(histogram: IntArray, low: int, high: int) -> int:
     total = 0
     for i in range(max(0, low), min(len(histogram), high)):
@@ -156,7 +156,7 @@ def _sum(histogram: IntArray, low: int, high: int) -> int:
     return total
 
 
-@njit(cache=True)
+@compiled_part
 def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float) -> float:
     total, weighted = 0, 0.0
     for i in range(max(0, low), min(len(histogram), high)):
@@ -165,7 +165,7 @@ def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float
     return weighted * width / total
 
 
-@njit(cache=True)
+@compiled_part
 def level_at(levels: NDArray[np.float64], begin: int, end: int, height: float) -> int:
     """The level that a height belongs to, -1 if there is none."""
     for level in range(begin, end):

@@ -1,10 +1,10 @@
 """LZF decompression, the coding of PCD ``binary_compressed`` (Marc Lehmann's liblzf)."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from singulation_core import InvalidInputError
+from singulation_perception.jit import compiled
 
 _CORRUPT = -1
 
@@ -23,7 +23,7 @@ def decompress_lzf(packed: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
     return unpacked
 
 
-@njit(cache=True)
+@compiled
 def _unpack(source: NDArray[np.uint8], target: NDArray[np.uint8]) -> int:
     """Number of bytes written, or ``_CORRUPT`` if a run leads outside either buffer.
 

@@ -1,21 +1,21 @@
 """One pass over the cloud: what stands on the table, in table coordinates, as runs along the rows of the image."""
 
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from numba import njit, types
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.cloud_sample import ANY_CLOUD, Window, Workspace
+from singulation_perception.cloud_sample import Window, Workspace
+from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.raster import Raster
 
 IntArray = NDArray[np.int32]
 Heights = NDArray[np.float32]
 
 ROW, START, STOP, FIRST = 0, 1, 2, 3  # columns of a table of runs
 
+_BLOCK = 32  # points of a row that are passed over together if none of them is high enough
 _TOO_FAR = 100.0  # [m] above the table: an infinite or absurd point
 
 
@@ -27,16 +27,18 @@ class ObjectPoints:
         xyz: (n, 3) float32 in ``table`` [m].
         runs: (m, 4) int32: row, first column, column after the last, number of the first point. Neighbours inside a
             run differ by at most the height step.
+        spans: (m, 2) least and greatest height in each run [m].
         outside: object points left out because they lie outside the workspace.
     """
 
     xyz: NDArray[np.float32]
     runs: IntArray
+    spans: NDArray[np.float32]
     outside: int
 
 
 def object_points(
-    points: NDArray[np.float32],
+    cloud: Raster,
     table_from_camera: FloatArray,
     workspace: Workspace | None,
     window: Window,
@@ -46,7 +48,7 @@ def object_points(
     """Collects what is higher than ``lowest`` and inside the workspace.
 
     Args:
-        points: (H, W, 3) float32, any strides, camera frame [m].
+        cloud: camera frame [m].
         table_from_camera: 4x4 of the fitted table.
         workspace: limits in ``table``, or None.
         window: part of the image that is looked at.
@@ -55,69 +57,87 @@ def object_points(
     """
     limits = np.array(workspace or (-np.inf, np.inf, -np.inf, np.inf), dtype=np.float32)
     pose = table_from_camera[:3].astype(np.float32)
-    top, bottom, left, right = window
-    points = points[top:bottom, left:right]
-    size = points.shape[0] * points.shape[1]
-    xyz = np.empty((size, 3), dtype=np.float32)  # untouched pages cost nothing
-    runs = np.empty((size // 2 + points.shape[0], 4), dtype=np.int32)
-    count, run_count, outside = _compiled()(points, pose, limits, np.float32(lowest), np.float32(step), xyz, runs)
-    runs = runs[:run_count].copy()
-    runs[:, ROW] += top
-    runs[:, START : STOP + 1] += left
-    return ObjectPoints(xyz[:count].copy(), runs, outside)
+    rows, columns = window[1] - window[0], window[3] - window[2]
+    xyz = np.empty((rows * columns, 3), dtype=np.float32)  # untouched pages cost nothing
+    runs = np.empty((rows * (columns + 1) // 2 + rows, 4), dtype=np.int32)
+    spans = np.empty((len(runs), 2), dtype=np.float32)
+    count, run_count, outside = _collect(
+        cloud, window, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
+    )
+    return ObjectPoints(xyz[:count], runs[:run_count], spans[:run_count], outside)
 
 
-@lru_cache(maxsize=1)
-def _compiled() -> Any:
-    """Compiled once for any strides and for read-only clouds, else every kind of cloud would compile anew."""
-    signature = types.UniTuple(types.int64, 3)(
-        ANY_CLOUD, types.float32[:, ::1], types.float32[::1], types.float32, types.float32,
-        types.float32[:, ::1], types.int32[:, ::1],
-    )  # fmt: skip
-    return njit(signature, cache=True)(_collect)
-
-
+@compiled
 def _collect(
-    points: NDArray[np.float32],
+    cloud: Raster,
+    window: Window,
     pose: NDArray[np.float32],
     limits: NDArray[np.float32],
     lowest: np.float32,
     step: np.float32,
     xyz: NDArray[np.float32],
     runs: IntArray,
+    spans: NDArray[np.float32],
 ) -> tuple[int, int, int]:
-    height, width = points.shape[0], points.shape[1]
-    (ax, bx, cx, dx), (ay, by, cy, dy), (az, bz, cz, dz) = _row(pose, 0), _row(pose, 1), _row(pose, 2)
+    top, bottom, left, right = window
+    numbers, point_step = cloud.numbers, np.uintp(cloud.point_step)
+    # Numbers of their own: array elements would be read again after every point that is written.
+    ax, bx, cx, dx = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
+    ay, by, cy, dy = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
     x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
-    levels = np.empty(width, dtype=np.float32)
+    levels = np.empty(right - left, dtype=np.float32)
     count, run, outside = 0, -1, 0
-    for row in range(height):
-        for column in range(width):  # on its own, because the compiler makes vector instructions of it
-            a, b, c = points[row, column, 0], points[row, column, 1], points[row, column, 2]
-            levels[column] = a * az + b * bz + c * cz + dz
+    for row in range(top, bottom):
+        start = np.uintp(row * cloud.row_step + left * cloud.point_step)
+        _heights(numbers, start, point_step, pose, levels)
         last = -2
-        for column in range(width):
-            level = levels[column]
-            if not (level > lowest):
+        for begin in range(0, len(levels), _BLOCK):
+            end = min(begin + _BLOCK, len(levels))
+            some = 0
+            for column in range(begin, end):
+                some += levels[column] > lowest
+            if some == 0:
                 continue
-            a, b, c = points[row, column, 0], points[row, column, 1], points[row, column, 2]
-            x, y = a * ax + b * bx + c * cx + dx, a * ay + b * by + c * cy + dy
-            if not (x_min <= x <= x_max and y_min <= y <= y_max):
-                outside += 1
-                continue
-            if not (level < _TOO_FAR) or (a == 0.0 and b == 0.0 and c == 0.0):
-                continue
-            if last != column - 1 or not (abs(level - levels[last]) <= step):
-                run += 1
-                runs[run, 0], runs[run, 1], runs[run, 3] = row, column, count
-            last = column
-            runs[run, 2] = column + 1
-            xyz[count, 0], xyz[count, 1], xyz[count, 2] = x, y, level
-            count += 1
+            for column in range(begin, end):
+                level = levels[column]
+                if not (level > lowest):
+                    continue
+                at = start + np.uintp(column) * point_step
+                a, b, c = numbers[at], numbers[at + np.uintp(1)], numbers[at + np.uintp(2)]
+                x, y = a * ax + b * bx + c * cx + dx, a * ay + b * by + c * cy + dy
+                if not (x_min <= x <= x_max and y_min <= y <= y_max):
+                    outside += 1
+                    continue
+                if not (level < _TOO_FAR) or (a == 0.0 and b == 0.0 and c == 0.0):
+                    continue
+                if last != column - 1 or not (abs(level - levels[last]) <= step):
+                    run += 1
+                    runs[run, 0], runs[run, 1], runs[run, 3] = row, left + column, count
+                    spans[run, 0], spans[run, 1] = level, level
+                last = column
+                runs[run, 2] = left + column + 1
+                spans[run, 0], spans[run, 1] = min(spans[run, 0], level), max(spans[run, 1], level)
+                xyz[count, 0], xyz[count, 1], xyz[count, 2] = x, y, level
+                count += 1
     return count, run + 1, outside
 
 
-@njit(inline="always")
-def _row(pose: NDArray[np.float32], row: int) -> tuple[float, float, float, float]:
-    """Numbers of their own: array elements would be read again after every point that is written."""
-    return pose[row, 0], pose[row, 1], pose[row, 2], pose[row, 3]
+@compiled_part
+def _heights(
+    numbers: NDArray[np.float32],
+    start: int,
+    point_step: int,
+    pose: NDArray[np.float32],
+    levels: NDArray[np.float32],
+) -> None:
+    """Heights of the points of one row; unsigned indices and a known step, because that makes vector instructions."""
+    a, b, c, d = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
+    one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
+    if point_step == three:
+        for column in range(len(levels)):
+            at = start + three * np.uintp(column)
+            levels[column] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d
+    else:
+        for column in range(len(levels)):
+            at = start + point_step * np.uintp(column)
+            levels[column] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d

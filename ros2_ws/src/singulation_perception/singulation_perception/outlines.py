@@ -2,10 +2,10 @@
 
 import cv2
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import corners_of, refitted
+from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.rings import Scale, hull_indices
 
 _ROUNDS = 4
@@ -40,7 +40,7 @@ def simplified(ring: FloatArray, tolerance: float) -> FloatArray:
     return np.asarray(corners[:, 0, :].astype(np.float64) + origin)
 
 
-@njit(cache=True)
+@compiled
 def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scale) -> tuple[FloatArray, bool]:
     """Refits edges, drops corners finer than the tolerance, and grows the result."""
     corners = polygon
@@ -57,7 +57,7 @@ def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scal
     return grown, good and len(grown) >= 3
 
 
-@njit(cache=True)
+@compiled_part
 def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
     """Whether every edge runs along its line in the right sense, so that the corners form a convex polygon."""
     for i in range(len(corners)):
@@ -68,14 +68,14 @@ def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
     return True
 
 
-@njit(cache=True)
+@compiled_part
 def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
     """Drops edges that only cut a corner off by less than the tolerance, the finest first."""
     count = len(lines)
     while count > 3:
         finest, least = -1, tolerance
         for k in range(count):
-            depth = _cut_off(lines[:count], k)
+            depth = _cut_off(lines, count, k)
             if depth < least:
                 finest, least = k, depth
         if finest < 0:
@@ -87,14 +87,15 @@ def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
     return lines[:count]
 
 
-@njit(cache=True)
-def _cut_off(lines: FloatArray, k: int) -> float:
-    """How far outside line k its neighbours would meet without it; infinite if they would not."""
-    a, b, line = lines[k - 1], lines[k + 1 if k + 1 < len(lines) else 0], lines[k]
-    sine = a[0] * b[1] - a[1] * b[0]
-    if not (sine > 0.1 or (sine > -0.1 and a[0] * b[0] + a[1] * b[1] > 0.0)):
+@compiled_part
+def _cut_off(lines: FloatArray, count: int, k: int) -> float:
+    """How far outside line k of ``count`` its neighbours would meet without it; infinite if they would not."""
+    i, j = k - 1 if k > 0 else count - 1, k + 1 if k + 1 < count else 0
+    ax, ay, a, bx, by, b = lines[i, 0], lines[i, 1], lines[i, 2], lines[j, 0], lines[j, 1], lines[j, 2]
+    sine = ax * by - ay * bx
+    if not (sine > 0.1 or (sine > -0.1 and ax * bx + ay * by > 0.0)):
         return np.inf
     if abs(sine) < 0.02:
-        return abs(a[2] - b[2])
-    x, y = (a[2] * b[1] - b[2] * a[1]) / sine, (b[2] * a[0] - a[2] * b[0]) / sine
-    return abs(line[0] * x + line[1] * y - line[2])
+        return abs(a - b)
+    x, y = (a * by - b * ay) / sine, (b * ax - a * bx) / sine
+    return abs(lines[k, 0] * x + lines[k, 1] * y - lines[k, 2])

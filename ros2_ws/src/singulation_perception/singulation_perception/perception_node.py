@@ -80,7 +80,11 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
         self.create_timer(_REPORT_PERIOD, self._report)
 
     def deactivate(self) -> None:
-        """Finish the present cloud, give up the waiting one."""
+        """Finish the present cloud, give up the waiting one.
+
+        Raises:
+            SingulationError: ``TIMEOUT``: the present cloud takes too long.
+        """
         worker, self._worker = self._worker, None
         if worker is not None and not worker.stop(_STOP_TIMEOUT):
             raise SingulationError(ResultCode.TIMEOUT, f"a cloud is in work for more than {_STOP_TIMEOUT} s")

@@ -1,9 +1,9 @@
 """Robust fit of a plane to points: the best of many three-point planes, then least squares on what lies near it."""
 
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled, compiled_sums
 
 _SCORED = 2_000  # points that score a hypothesis
 _ROUNDS = 4
@@ -36,7 +36,7 @@ def best_plane(points: FloatArray, hypotheses: int, reach: float, first: FloatAr
     return np.asarray(planes[_best(planes, scored, reach)])
 
 
-@njit(cache=True)
+@compiled
 def _best(planes: FloatArray, points: FloatArray, reach: float) -> int:
     """Plane with most of the (3, n) points within ``reach``."""
     best, most = 0, -1
@@ -76,7 +76,7 @@ def refined_plane(points: FloatArray, plane: FloatArray, reach: float) -> tuple[
     return plane, noise, reach
 
 
-@njit(cache=True)
+@compiled_sums
 def _moments(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatArray, FloatArray, int]:
     """Mean, (3, 3) second moments about it, and number of the points within ``reach``."""
     total, products = np.zeros(3), np.zeros((3, 3))
@@ -88,12 +88,16 @@ def _moments(points: FloatArray, plane: FloatArray, reach: float) -> tuple[Float
                 total[j] += points[i, j] - points[0, j]  # relative, to keep the digits
                 for k in range(j, 3):
                     products[j, k] += (points[i, j] - points[0, j]) * (points[i, k] - points[0, k])
+    if count == 0:
+        return total, products, count
+    for j in range(3):
+        total[j] /= count
     for j in range(3):
         for k in range(j, 3):
-            products[j, k] = products[j, k] / max(count, 1) - total[j] * total[k] / max(count, 1) ** 2
+            products[j, k] = products[j, k] / count - total[j] * total[k]
             products[k, j] = products[j, k]
     for j in range(3):
-        total[j] = total[j] / max(count, 1) + points[0, j]
+        total[j] += points[0, j]
     return total, products, count
 
 

@@ -5,12 +5,13 @@ Lengths are in metres. ``roughness`` is the depth up to which a rim counts as st
 point spacings rough, noise along an oblique line of sight some more.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.object_points import IntArray
 
 
@@ -31,7 +32,7 @@ class Scale(NamedTuple):
 _RANK = 4  # points that must lie that deep: less is a hole at the rim
 
 
-@njit(cache=True)
+@compiled_part
 def ring_area(ring: FloatArray) -> float:
     """Signed area [m^2], positive when counter-clockwise."""
     total = 0.0
@@ -42,7 +43,7 @@ def ring_area(ring: FloatArray) -> float:
     return 0.5 * total
 
 
-@njit(cache=True)
+@compiled
 def hull_indices(ring: FloatArray) -> IntArray:
     """Which points of a ring are corners of its convex hull, counter-clockwise (Andrew's monotone chain)."""
     size = len(ring)
@@ -64,7 +65,7 @@ def hull_indices(ring: FloatArray) -> IntArray:
     return hull
 
 
-@njit(cache=True)
+@compiled_part
 def _sorted_by_place(ring: FloatArray) -> IntArray:
     """Numbers of the points by x, then y. Merge sort: NumPy's would take longer to compile than all of this file."""
     size = len(ring)
@@ -88,19 +89,19 @@ def _sorted_by_place(ring: FloatArray) -> IntArray:
     return order
 
 
-@njit(cache=True)
+@compiled_part
 def _before(ring: FloatArray, a: int, b: int) -> bool:
     if ring[a, 0] != ring[b, 0]:
         return ring[a, 0] < ring[b, 0]
     return ring[a, 1] < ring[b, 1]
 
 
-@njit(cache=True)
+@compiled_part
 def _turn(ring: FloatArray, a: int, b: int, c: int) -> float:
     return (ring[b, 0] - ring[a, 0]) * (ring[c, 1] - ring[a, 1]) - (ring[b, 1] - ring[a, 1]) * (ring[c, 0] - ring[a, 0])
 
 
-@njit(cache=True)
+@compiled_part
 def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     """Area between a ring and its hull, of the pockets deeper than the roughness of the rim [m^2]."""
     total = 0.0
@@ -109,7 +110,7 @@ def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     return total
 
 
-@njit(cache=True)
+@compiled
 def pocket_depths(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
     """(p, 3) pockets as from ``pockets``, and how deep each is [m]."""
     found = pockets(ring, hull, roughness)
@@ -120,7 +121,7 @@ def pocket_depths(ring: FloatArray, hull: IntArray, roughness: float) -> FloatAr
     return deep
 
 
-@njit(cache=True)
+@compiled_part
 def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> IntArray:
     """(p, 2) first and last point of each pocket between ring and hull that is deeper than ``roughness`` [m].
 
@@ -138,7 +139,7 @@ def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> IntArray:
     return found[:count]
 
 
-@njit(cache=True)
+@compiled_part
 def _in_order(hull: IntArray) -> IntArray:
     """Numbers of the corners sorted: noise along the line of sight can make a ring, and with it its hull, skip back."""
     start = 0
@@ -156,13 +157,13 @@ def _in_order(hull: IntArray) -> IntArray:
     return corners
 
 
-@njit(cache=True)
+@compiled_part
 def _pocket(ring: FloatArray, first: int, last: int) -> tuple[float, float]:
     """Area behind one edge of the hull and how deep its fourth deepest point lies."""
     size = len(ring)
     end = last if last < size else last - size
     ex, ey = ring[end, 0] - ring[first, 0], ring[end, 1] - ring[first, 1]
-    length = np.sqrt(ex * ex + ey * ey)
+    length = math.sqrt(ex * ex + ey * ey)
     if length == 0.0:
         return 0.0, 0.0
     deepest = np.zeros(_RANK)
@@ -183,14 +184,14 @@ def _pocket(ring: FloatArray, first: int, last: int) -> tuple[float, float]:
     return 0.5 * abs(area), deepest[_RANK - 1]
 
 
-@njit(cache=True)
+@compiled_part
 def least_width(ring: FloatArray, hull: IntArray) -> float:
     """Distance of the closest pair of parallel lines that hold the ring [m]."""
     least = np.inf
     for k in range(len(hull)):
         a, b = hull[k], hull[k + 1] if k + 1 < len(hull) else hull[0]
         ex, ey = ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
-        length = np.sqrt(ex * ex + ey * ey)
+        length = math.sqrt(ex * ex + ey * ey)
         if length > 0.0:
             widest = 0.0
             for i in hull:

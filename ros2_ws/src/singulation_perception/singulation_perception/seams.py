@@ -5,13 +5,14 @@ two corners meet. The seam continues one of the two edges that end there, and en
 two corners are flush, at an ordinary corner or in the middle of an edge.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import fitted_line
+from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale
 
@@ -76,14 +77,15 @@ def corners_of_ring(ring: FloatArray, polygon: FloatArray) -> Corners:
     return Corners(*_edges(ring, polygon))
 
 
-@njit(cache=True)
+@compiled
 def _edges(ring: FloatArray, polygon: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, IntArray]:
     count = len(polygon)
     index = np.empty(count, dtype=np.int32)
     for k in range(count):
         best = np.inf
         for i in range(len(ring)):
-            distance = (ring[i, 0] - polygon[k, 0]) ** 2 + (ring[i, 1] - polygon[k, 1]) ** 2
+            x, y = ring[i, 0] - polygon[k, 0], ring[i, 1] - polygon[k, 1]
+            distance = x * x + y * y
             if distance < best:
                 best, index[k] = distance, i
     lines, length, fitted = np.empty((count, 3)), np.empty(count), np.zeros(count, dtype=np.int32)
@@ -91,7 +93,7 @@ def _edges(ring: FloatArray, polygon: FloatArray) -> tuple[IntArray, FloatArray,
     for k in range(count):
         a, b = index[k], index[k + 1 if k + 1 < count else 0]
         x, y = ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
-        length[k] = np.sqrt(x * x + y * y)
+        length[k] = math.sqrt(x * x + y * y)
         x, y = x / max(length[k], 1e-12), y / max(length[k], 1e-12)
         lines[k, 0], lines[k, 1], lines[k, 2] = y, -x, y * ring[a, 0] - x * ring[a, 1]
         steps = (b - a) % len(ring) + 1
@@ -106,7 +108,7 @@ def _edges(ring: FloatArray, polygon: FloatArray) -> tuple[IntArray, FloatArray,
     return index, lines, length, fitted
 
 
-@njit(cache=True)
+@compiled
 def candidates(
     ring: FloatArray,
     index: IntArray,
@@ -131,52 +133,57 @@ def candidates(
         for edge, sense in (((k - 1) % count, 1.0), (k, -1.0)):
             if length[edge] < _SHORTEST_EDGE * pitch:
                 continue
-            reach, hit = _cast(ring, index[k], lines[edge], sense, _SHORTEST_SEAM * pitch)
+            reach, hit = _cast(ring, np.int64(index[k]), lines, edge, sense, _SHORTEST_SEAM * pitch)
             if hit < 0:
                 continue
             end, other, sine = _end(ring, index, lines, turn, k, edge, sense, reach, hit, pitch)
             penalty = open_end
             if end >= 0:
                 hit = np.int64(index[end])
-                reach = _distance(ring, index[k], hit)
+                reach = _distance(ring, np.int64(index[k]), hit)
                 penalty = bend * min(sine, 0.3) if turn[end] < _REFLEX else corner_end
             aligned = end >= 0 and turn[end] < _REFLEX and sine < _ALIGNED
-            _write(found[size], index[k], hit, reach, penalty, edge, other if aligned else -1)
+            _write(found, size, np.int64(index[k]), hit, reach, penalty, edge, other if aligned else -1)
             size += 1
         for other in range(k + 1, count):
-            across = _distance(ring, index[k], np.int64(index[other]))
+            across = _distance(ring, np.int64(index[k]), np.int64(index[other]))
             apart = _apart(np.int64(index[k]), np.int64(index[other]), len(ring))
             if turn[other] < _REFLEX and across < _NECK * pitch and apart > _NEAR:
-                _write(found[size], index[k], np.int64(index[other]), across, neck, -1, -1)
+                _write(found, size, np.int64(index[k]), np.int64(index[other]), across, neck, -1, -1)
                 size += 1
     return found[:size]
 
 
-@njit(cache=True)
-def _write(row: FloatArray, first: int, last: int, length: float, penalty: float, edge: int, other: int) -> None:
-    row[0], row[1], row[2], row[3], row[4], row[5] = first, last, length, penalty, edge, other
+@compiled_part
+def _write(
+    cuts: FloatArray, k: int, first: int, last: int, length: float, penalty: float, edge: int, other: int
+) -> None:
+    cuts[k, 0], cuts[k, 1], cuts[k, 2] = first, last, length
+    cuts[k, 3], cuts[k, 4], cuts[k, 5] = penalty, edge, other
 
 
-@njit(cache=True)
+@compiled_part
 def _distance(ring: FloatArray, a: int, b: int) -> float:
-    return np.sqrt((ring[a, 0] - ring[b, 0]) ** 2 + (ring[a, 1] - ring[b, 1]) ** 2)
+    x, y = ring[a, 0] - ring[b, 0], ring[a, 1] - ring[b, 1]
+    return math.sqrt(x * x + y * y)
 
 
-@njit(cache=True)
+@compiled_part
 def _apart(a: int, b: int, size: int) -> int:
     return min((a - b) % size, (b - a) % size)
 
 
-@njit(cache=True)
-def _cast(ring: FloatArray, start: int, line: FloatArray, sense: float, least: float) -> tuple[float, int]:
+@compiled_part
+def _cast(ring: FloatArray, start: int, lines: FloatArray, edge: int, sense: float, least: float) -> tuple[float, int]:
     """How far the line runs from a point of the ring until it meets the ring again, and the point it meets."""
-    ux, uy = -line[1] * sense, line[0] * sense
+    nx, ny, offset = lines[edge, 0], lines[edge, 1], lines[edge, 2]
+    ux, uy = -ny * sense, nx * sense
     best, hit = np.inf, -1
     last = len(ring) - 1
-    before = line[0] * ring[last, 0] + line[1] * ring[last, 1] - line[2]
+    before = nx * ring[last, 0] + ny * ring[last, 1] - offset
     before_t = (ring[last, 0] - ring[start, 0]) * ux + (ring[last, 1] - ring[start, 1]) * uy
     for i in range(len(ring)):
-        side = line[0] * ring[i, 0] + line[1] * ring[i, 1] - line[2]
+        side = nx * ring[i, 0] + ny * ring[i, 1] - offset
         t = (ring[i, 0] - ring[start, 0]) * ux + (ring[i, 1] - ring[start, 1]) * uy
         if (side > 0.0) != (before > 0.0):
             f = before / (before - side)
@@ -187,7 +194,7 @@ def _cast(ring: FloatArray, start: int, line: FloatArray, sense: float, least: f
     return best, hit
 
 
-@njit(cache=True)
+@compiled_part
 def _end(
     ring: FloatArray,
     index: IntArray,

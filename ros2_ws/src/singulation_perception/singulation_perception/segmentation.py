@@ -14,6 +14,7 @@ from singulation_perception.hidden import View
 from singulation_perception.object_points import ObjectPoints, object_points
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.point_labels import labels_in_image
+from singulation_perception.raster import raster_of
 from singulation_perception.surfaces import surfaces_of
 from singulation_perception.table_plane import TablePlane, find_table
 
@@ -95,11 +96,12 @@ def segment_cloud(
     """
     clock = _Clock()
     image = _image(points, parameters)
-    table = find_table(image, parameters, previous_plane)
+    cloud = raster_of(image)
+    table = find_table(cloud, parameters, previous_plane)
     clock.lap("table")
     step = parameters.height_step or max(_STEP_IN_NOISE * table.noise, _LEAST_STEP)
     lowest = max(parameters.min_height, _LOWEST_IN_NOISE * table.noise)
-    seen = object_points(image, table.table_from_camera, parameters.workspace, table.window, lowest, step)
+    seen = object_points(cloud, table.table_from_camera, parameters.workspace, table.window, lowest, step)
     clock.lap("points")
     flat = None
     if image.shape[0] == 1:
@@ -108,7 +110,7 @@ def segment_cloud(
         clock.lap("clusters")
     surfaces = surfaces_of(seen, step, None if flat is None else flat.cluster)
     clock.lap("surfaces")
-    view = View(table.table_from_camera[:3, 3], table.camera_plane, image if flat is None else None)
+    view = View(table.table_from_camera[:3, 3], table.camera_plane, cloud if flat is None else None)
     blocks = blocks_of(seen, surfaces, parameters, table.noise, view)
     clock.lap("outlines")
     dropped = {"outside": seen.outside, **blocks.dropped}

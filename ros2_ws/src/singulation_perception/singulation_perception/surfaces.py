@@ -1,11 +1,12 @@
 """Connected surfaces among the object points, and the flat top faces in them."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from singulation_perception.jit import compiled, compiled_part, compiled_sums
 from singulation_perception.levels import level_at, levels_of
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
 from singulation_perception.union_find import numbered_roots, single_sets, unite
@@ -65,7 +66,7 @@ def surfaces_of(seen: ObjectPoints, step: float, cluster: IntArray | None = None
     """
     kind = np.zeros(len(seen.runs), dtype=np.int32) if cluster is None else cluster
     surface, count = connected_runs(seen.xyz, seen.runs, kind, step)
-    return Surfaces(surface, *_sizes(seen.xyz, seen.runs, surface, count))
+    return Surfaces(surface, *_sizes(seen.runs, seen.spans, surface, count))
 
 
 def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, highest: float, min_size: int) -> Faces:
@@ -85,14 +86,14 @@ def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, 
     first, levels = levels_of(
         seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, apart, highest, min_size
     )
-    runs, level = _runs_on_levels(seen.xyz, seen.runs, surfaces.of_run, first, levels)
+    runs, level = _runs_on_levels(seen.xyz, seen.runs, seen.spans, surfaces.of_run, first, levels)
     face, count = connected_runs(seen.xyz, runs, level, np.inf)
     counts, heights, scatter, holes, boxes, level_of_face = _face_table(seen.xyz, runs, face, level, count)
     surface = np.searchsorted(first, level_of_face, side="right").astype(np.int32) - 1
     return Faces(runs, face, surface, np.isfinite(levels[level_of_face, 0]), counts, heights, scatter, holes, boxes)
 
 
-@njit(cache=True)
+@compiled
 def connected_runs(xyz: Points, runs: IntArray, kind: IntArray, step: float) -> tuple[IntArray, int]:
     """Number of the connected set of each run: runs of one kind, above one another, at most ``step`` apart."""
     parent = single_sets(len(runs))
@@ -111,7 +112,7 @@ def connected_runs(xyz: Points, runs: IntArray, kind: IntArray, step: float) -> 
     return numbered_roots(parent)
 
 
-@njit(cache=True)
+@compiled_part
 def _meet(xyz: Points, runs: IntArray, one: int, two: int, step: float) -> bool:
     """Whether two runs in neighbouring rows have neighbours that differ by at most ``step``."""
     begin, end = max(runs[one, START], runs[two, START]), min(runs[one, STOP], runs[two, STOP])
@@ -123,34 +124,41 @@ def _meet(xyz: Points, runs: IntArray, one: int, two: int, step: float) -> bool:
     return False
 
 
-@njit(cache=True)
-def _sizes(xyz: Points, runs: IntArray, surface: IntArray, count: int) -> tuple[IntArray, NDArray[np.float32]]:
+@compiled
+def _sizes(
+    runs: IntArray, spans: NDArray[np.float32], surface: IntArray, count: int
+) -> tuple[IntArray, NDArray[np.float32]]:
     sizes = np.zeros(count, dtype=np.int32)
     tops = np.zeros(count, dtype=np.float32)
     for run in range(len(runs)):
-        length = runs[run, STOP] - runs[run, START]
-        sizes[surface[run]] += length
-        top = tops[surface[run]]
-        for i in range(runs[run, FIRST], runs[run, FIRST] + length):
-            top = max(top, xyz[i, 2])
-        tops[surface[run]] = top
+        sizes[surface[run]] += runs[run, STOP] - runs[run, START]
+        tops[surface[run]] = max(tops[surface[run]], spans[run, 1])
     return sizes, tops
 
 
-@njit(cache=True)
+@compiled
 def _runs_on_levels(
-    xyz: Points, runs: IntArray, surface: IntArray, first: IntArray, levels: NDArray[np.float64]
+    xyz: Points,
+    runs: IntArray,
+    spans: NDArray[np.float32],
+    surface: IntArray,
+    first: IntArray,
+    levels: NDArray[np.float64],
 ) -> tuple[IntArray, IntArray]:
     """Runs cut where the level changes, without the points that lie on none."""
-    total = 0
-    for run in range(len(runs)):
-        total += runs[run, STOP] - runs[run, START]
-    cut = np.empty((total, 4), dtype=np.int32)
-    kind = np.empty(total, dtype=np.int32)
+    cut = np.empty((len(xyz), 4), dtype=np.int32)
+    kind = np.empty(len(xyz), dtype=np.int32)
     count = 0
     for run in range(len(runs)):
         begin, end = first[surface[run]], first[surface[run] + 1]
         if begin == end:
+            continue
+        level = level_at(levels, begin, end, spans[run, 0])
+        if level >= 0 and level == level_at(levels, begin, end, spans[run, 1]):  # the usual case, all of it
+            for k in range(4):
+                cut[count, k] = runs[run, k]
+            kind[count] = level
+            count += 1
             continue
         last = -1
         for column in range(runs[run, START], runs[run, STOP]):
@@ -166,7 +174,7 @@ def _runs_on_levels(
     return cut[:count], kind[:count]
 
 
-@njit(cache=True)
+@compiled_sums
 def _face_table(
     xyz: Points, runs: IntArray, face: IntArray, level: IntArray, count: int
 ) -> tuple[IntArray, NDArray[np.float64], NDArray[np.float64], IntArray, IntArray, IntArray]:
@@ -188,11 +196,14 @@ def _face_table(
         box[one, 3] = max(box[one, 3], runs[run, STOP])
         length = runs[run, STOP] - runs[run, START]
         counts[one] += length
+        total, square = 0.0, 0.0
         for i in range(runs[run, FIRST], runs[run, FIRST] + length):
             height = np.float64(xyz[i, 2])
-            heights[one] += height
-            squares[one] += height * height
+            total += height
+            square += height * height
+        heights[one] += total
+        squares[one] += square
     for one in range(count):
         heights[one] /= counts[one]
-        squares[one] = np.sqrt(max(squares[one] / counts[one] - heights[one] ** 2, 0.0))
+        squares[one] = math.sqrt(max(squares[one] / counts[one] - heights[one] * heights[one], 0.0))
     return counts, heights, squares, holes, box, level_of_face

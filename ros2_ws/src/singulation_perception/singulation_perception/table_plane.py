@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from singulation_core import ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
@@ -11,6 +10,7 @@ from singulation_core.transforms import inverse
 from singulation_perception.cloud_sample import CloudSample, Window, sample
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.plane_fit import best_plane, plane_spread, refined_plane
+from singulation_perception.raster import Raster
 
 _NEAR_HYPOTHESES = 96  # near an expected table, every second point lies on it
 _FREE_HYPOTHESES = 500  # three points of a plane that holds a fifth of the cloud come up four times
@@ -45,14 +45,14 @@ class TablePlane:
 
 
 def find_table(
-    points: NDArray[np.float32],
+    cloud: Raster,
     parameters: SegmentationParameters,
     previous: TablePlane | None = None,
 ) -> TablePlane:
     """Robust plane fit on a subsample of the cloud.
 
     Args:
-        points: (H, W, 3), any strides, camera frame [m].
+        cloud: camera frame [m].
         parameters: expected pose and limits.
         previous: the table in the last cloud; tried too, so that equal scenes give equal planes.
 
@@ -62,7 +62,7 @@ def find_table(
     """
     expected = parameters.table_from_camera
     frame = np.eye(4) if expected is None else expected
-    picked = sample(points, frame, None if expected is None else parameters.workspace)
+    picked = sample(cloud, frame, None if expected is None else parameters.workspace)
     if len(picked.located) < 100:
         raise SingulationError(
             ResultCode.NO_POINTS,

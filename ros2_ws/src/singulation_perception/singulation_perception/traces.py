@@ -1,10 +1,12 @@
 """What the cloud shows along a possible seam: missing points of a groove, a step of the height."""
 
+import math
+
 import numpy as np
-from numba import njit
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage
+from singulation_perception.jit import compiled, compiled_part
 
 _ENDS = 4.0  # pitches at either end of the seam, where its corners disturb
 _NEAR, _FAR = 3.5, 7.5  # pitches from the seam at which heights are compared
@@ -31,14 +33,15 @@ def trace_strength(image: FaceImage, start: FloatArray, end: FloatArray, pitch: 
     return float(min(1.0, max(0.0, groove, edge)))
 
 
-@njit(cache=True)
+@compiled
 def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float) -> tuple[float, float, float]:
     """Share of places on the line without points, beyond what is missing beside it; step [m] and its standard error.
 
     The step compares heights extrapolated to the line from either side, so that a tilted face has none.
     """
-    length = np.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
-    ux, uy = (bx - ax) / max(length, 1e-12), (by - ay) / max(length, 1e-12)
+    ux, uy = bx - ax, by - ay
+    length = math.sqrt(ux * ux + uy * uy)
+    ux, uy = ux / max(length, 1e-12), uy / max(length, 1e-12)
     places = int(length / pitch - 2.0 * _ENDS)
     count, total, squares = np.zeros(4), np.zeros(4), np.zeros(4)
     on, beside = 0, 0
@@ -48,12 +51,12 @@ def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: 
         for d in range(-_REACH, _REACH + 1):
             height = _height(image, ax + t * ux - d * pitch * uy, ay + t * uy + d * pitch * ux)
             if -1 <= d <= 1:
-                lost[0] += np.isnan(height)
+                lost[0] += math.isnan(height)
             elif 3 <= d <= 5:
-                lost[1] += np.isnan(height)
+                lost[1] += math.isnan(height)
             elif -5 <= d <= -3:
-                lost[2] += np.isnan(height)
-            if abs(d) >= 2 and not np.isnan(height):
+                lost[2] += math.isnan(height)
+            if abs(d) >= 2 and not math.isnan(height):
                 band = (0 if d > 0 else 2) + (0 if abs(d) <= 5 else 1)
                 count[band] += 1.0
                 total[band] += height
@@ -74,15 +77,15 @@ def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: 
             slope = (mean - total[far] / count[far]) / (_FAR - _NEAR)
         level[side] = mean + slope * _NEAR
         error += 3.0 * variance / count[near]  # the slope's share doubles it
-    return missing, level[0] - level[1], np.sqrt(error)
+    return missing, level[0] - level[1], math.sqrt(error)
 
 
-@njit(cache=True)
+@compiled_part
 def _height(image: FaceImage, x: float, y: float) -> float:
     """Height at a place of the table, relative to a point of the face [m]; NaN without a point."""
     map_ = image.to_pixel
-    row = int(np.floor(map_[0, 0] * x + map_[0, 1] * y + map_[0, 2] + 0.5))
-    column = int(np.floor(map_[1, 0] * x + map_[1, 1] * y + map_[1, 2] + 0.5))
+    row = math.floor(map_[0, 0] * x + map_[0, 1] * y + map_[0, 2] + 0.5)
+    column = math.floor(map_[1, 0] * x + map_[1, 1] * y + map_[1, 2] + 0.5)
     if row < 0 or column < 0 or row >= image.point.shape[0] or column >= image.point.shape[1]:
         return np.nan
     point = image.point[row, column]

@@ -1,13 +1,14 @@
 """Union-find on an int32 array of parents, for compiled code."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from singulation_perception.jit import compiled_part
 
 IntArray = NDArray[np.int32]
 
 
-@njit(cache=True)
+@compiled_part
 def single_sets(count: int) -> IntArray:
     """Parents of items none of which are joined."""
     parent = np.empty(count, dtype=np.int32)
@@ -16,7 +17,7 @@ def single_sets(count: int) -> IntArray:
     return parent
 
 
-@njit(cache=True)
+@compiled_part
 def find_root(parent: IntArray, item: int) -> int:
     """Root of ``item``; halves the path on the way."""
     while parent[item] != item:
@@ -25,7 +26,7 @@ def find_root(parent: IntArray, item: int) -> int:
     return item
 
 
-@njit(cache=True)
+@compiled_part
 def unite(parent: IntArray, first: int, second: int) -> None:
     """Joins two sets; the smaller root stays, so that numbers follow the order of the items."""
     a, b = find_root(parent, np.int64(first)), find_root(parent, np.int64(second))
@@ -35,7 +36,7 @@ def unite(parent: IntArray, first: int, second: int) -> None:
         parent[a] = b
 
 
-@njit(cache=True)
+@compiled_part
 def numbered_roots(parent: IntArray) -> tuple[IntArray, int]:
     """Set number 0, 1, ... of every item, in the order of the first item, and how many sets there are."""
     numbers = np.empty(len(parent), dtype=np.int32)

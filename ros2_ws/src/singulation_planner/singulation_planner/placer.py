@@ -9,7 +9,7 @@ import numpy as np
 from singulation_core import ContactMode, Push, PusherGeometry
 from singulation_core.polygon import FloatArray
 from singulation_planner.candidates import Candidates
-from singulation_planner.kernels.carry import carried_over
+from singulation_planner.kernels.carry import mark_carried_over
 from singulation_planner.kernels.place import BLOCKED, FEASIBLE, MISSES, OUTSIDE, OVER_EDGE, UNTRIED, place
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.placement import Placement, clearance_of
@@ -66,8 +66,10 @@ class Placer:
         """Index and (2,) start point of the first candidate that can be performed."""
         starts, status = self._blank(len(candidates.objects))
         index = self._place(candidates, 0, False, starts, status)
-        while index >= 0 and self._over_edge(candidates, index, starts[index]):
-            status[index] = OVER_EDGE
+        while index >= 0:
+            self._mark_over_edge(candidates, starts, status)
+            if status[index] == FEASIBLE:
+                break
             index = self._place(candidates, index + 1, False, starts, status)
         if index >= 0:
             return index, starts[index]
@@ -78,9 +80,7 @@ class Placer:
         """Indices (k,) and start points (k, 2) of all candidates that can be performed."""
         starts, status = self._blank(len(candidates.objects))
         self._place(candidates, 0, True, starts, status)
-        for index in np.flatnonzero(status == FEASIBLE).tolist():
-            if self._over_edge(candidates, index, starts[index]):
-                status[index] = OVER_EDGE
+        self._mark_over_edge(candidates, starts, status)
         self.rejected.update(status[status != FEASIBLE].tolist())
         chosen = np.flatnonzero(status == FEASIBLE)
         return chosen, starts[chosen]
@@ -134,26 +134,26 @@ class Placer:
             )
         )
 
-    def _over_edge(self, candidates: Candidates, index: int, start: FloatArray) -> bool:
+    def _mark_over_edge(self, candidates: Candidates, starts: FloatArray, status: IntArray) -> None:
         if not len(self.walls[1]):
-            return False
-        scene, target = self.scene, int(candidates.objects[index])
+            return
         tip, half_edge, _, clearance = self.pusher.tolist()
-        half_width = half_edge if self.mode is ContactMode.EDGE else tip
+        half_widths = np.full(len(self.scene), half_edge if self.mode is ContactMode.EDGE else tip)
         if self.mode is ContactMode.TWO_POINT:
-            half_width += float(self.jaws[target])
-        return bool(
-            carried_over(
-                scene.centroids,
-                scene.radii,
-                *self.walls,
-                target,
-                *start.tolist(),
-                *candidates.directions[index].tolist(),
-                half_width,
-                self.travel,
-                clearance,
-            )
+            half_widths += self.jaws
+        mark_carried_over(
+            self.scene.centroids,
+            self.scene.radii,
+            *self.walls,
+            candidates.objects,
+            starts,
+            candidates.directions,
+            half_widths,
+            self.travel,
+            clearance,
+            status,
+            FEASIBLE,
+            OVER_EDGE,
         )
 
 

@@ -13,7 +13,7 @@ from singulation_planner.benchmark.paper import TABLE_ONE
 from singulation_planner.benchmark.progress import Progress
 from singulation_planner.benchmark.record import Record
 from singulation_planner.benchmark.statistics import difference, mean, share
-from singulation_planner.benchmark.tables import authors_table, table_one, table_two
+from singulation_planner.benchmark.tables import authors_table, judged_table, table_one, table_two
 from singulation_planner.benchmark.timing import Timing, timing_table
 
 GAINS = {"brute_force": 0.2, "cluster_push": 0.15, "quasi_random": 0.05}
@@ -42,6 +42,7 @@ def results(modes=("single_point",), factors=(1.0,), fits=("contact_mode",)):
                                     0.04,
                                     0.8,
                                     0.8 + whole,
+                                    0.8 + (whole if policy == "brute_force" else 0.9 * whole),
                                     1e-3,
                                     2e-3,
                                 ).as_row()
@@ -86,6 +87,10 @@ def test_scenes_without_a_push_are_told():
 def test_the_authors_table_stands_beside_the_authors_code():
     cells = row(authors_table(results()), "ClusterPush")
     assert cells == ["ClusterPush", "75.0 ± 0.0", "64.8", "75.0 ± 0.0", "89.5", "75.0 ± 0.0", "52.3"]
+
+
+def test_the_judge_counts_the_same_pushes_again():
+    assert row(judged_table(results()), "ClusterPush") == ["ClusterPush", *["67.5 ± 0.0"] * 3]
 
 
 def test_table_two_counts_equal_pushes_and_own_plans():

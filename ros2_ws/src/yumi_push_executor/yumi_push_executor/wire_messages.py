@@ -35,7 +35,11 @@ def duration_of(seconds: float) -> Any:
 
 
 def opening_to_msg(opening: float) -> Any:
-    """std_msgs/Float64MultiArray with the one value a gripper controller takes: jaw opening [m]."""
+    """std_msgs/Float64MultiArray with the one value a gripper controller takes: jaw opening [m].
+
+    Raises:
+        InvalidInputError: it is not finite.
+    """
     if not np.isfinite(opening):
         raise InvalidInputError(f"gripper: opening {opening} m, need a finite one")
     return Float64MultiArray(data=[float(opening)])

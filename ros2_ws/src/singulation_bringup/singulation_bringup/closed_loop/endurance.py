@@ -12,7 +12,8 @@ import psutil  # type: ignore[import-untyped]
 
 from singulation_bringup.closed_loop.library_cell import LibraryCell
 from singulation_bringup.closed_loop.setting import CellSetting
-from singulation_bringup.singulation_loop import DEFAULT_MIN_GAP, FALLBACK_POLICIES, SingulationGoal, SingulationLoop
+from singulation_bringup.policy_choice import DEFAULT_MIN_GAP, FALLBACK_POLICIES
+from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop
 from singulation_core import ContactMode
 from singulation_planner.benchmark.markdown import table
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from singulation_bringup.closed_loop.setting import CellSetting
 from singulation_bringup.closed_loop.stopwatch import Stopwatch
 from singulation_bringup.closed_loop.supervised_robot import SupervisedRobot
+from singulation_bringup.policy_choice import options_towards
 from singulation_bringup.singulation_loop import LOOK_AGAIN
 from singulation_core import Arrangement, ContactMode, Push, ResultCode, SingulationError
 from singulation_perception import TablePlane, segment_cloud
@@ -54,7 +55,7 @@ class LibraryCell:
         Raises:
             SingulationError: with perception's code.
         """
-        with self.stopwatch.timed("simulate"):
+        with self.stopwatch.timed("render"):
             view = self.simulation.view()
             self.simulation.run(self._setting.scan_time)
             cloud = self.simulation.render(view)
@@ -65,7 +66,7 @@ class LibraryCell:
         self._seen = Arrangement(found.arrangement.objects, stamp=self.simulation.now)
         return self._seen
 
-    def plan(self, seen: Arrangement, policy: str, mode: ContactMode) -> Push:
+    def plan(self, seen: Arrangement, policy: str, mode: ContactMode, min_gap: float) -> Push:
         """The policy's push.
 
         Raises:
@@ -82,6 +83,7 @@ class LibraryCell:
                 placement=setting.placement,
                 workspace=setting.geometry.workspace_polygon,
                 seed=self._seed,
+                **options_towards(policy, min_gap),
             )
 
     def execute(self, push: Push) -> None:
@@ -106,12 +108,13 @@ class LibraryCell:
             except SingulationError:
                 self.refused += 1
                 raise
-        try:
-            self.robot.perform(motion.segments)
-        except SingulationError as stop:
-            if stop.code in LOOK_AGAIN:
-                self.robot.leave_view(self._seen)
-            raise
+        with self.stopwatch.timed("moving"):
+            try:
+                self.robot.perform(motion.segments)
+            except SingulationError as stop:
+                if stop.code in LOOK_AGAIN:
+                    self.robot.leave_view(self._seen)
+                raise
 
     def check_cancelled(self) -> None:
         """Raise ``CANCELLED`` if the client has given up."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from singulation_bringup.closed_loop.trial import Trial
-from singulation_bringup.singulation_loop import DEFAULT_MIN_GAP, FALLBACK_POLICIES
+from singulation_bringup.policy_choice import DEFAULT_MIN_GAP, FALLBACK_POLICIES
 from singulation_core import ContactMode
 
 SQUARES, MIXED = "squares", "mixed"

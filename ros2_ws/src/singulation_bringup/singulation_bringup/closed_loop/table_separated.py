@@ -8,7 +8,7 @@ import pandas as pd
 from singulation_bringup.closed_loop.sets import SEPARATE
 from singulation_bringup.closed_loop.table_three import frame_of
 from singulation_bringup.closed_loop.trial import Record
-from singulation_bringup.singulation_loop import DEFAULT_MIN_GAP
+from singulation_bringup.policy_choice import DEFAULT_MIN_GAP
 from singulation_planner.benchmark.markdown import table
 from singulation_planner.benchmark.statistics import Estimate, mean
 

@@ -3,13 +3,15 @@
 import math
 import time
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from functools import cache
 from typing import Any
 
 from singulation_bringup.closed_loop.library_cell import LibraryCell
 from singulation_bringup.closed_loop.setting import CellSetting
-from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop, SingulationResult
+from singulation_bringup.singulation_loop import SingulationGoal, SingulationLoop
+from singulation_bringup.singulation_progress import SingulationResult
 from singulation_core import Arrangement, contact_mode, singulation_distance, smallest_gap
 from singulation_perception import warm_up as warm_perception
 from singulation_planner import warm_up as warm_planner
@@ -66,7 +68,9 @@ class Record:
         seen_gap_after: as perception sees it [m].
         looks: clouds.
         robot: simulated time in motions [s].
-        segment, plan, motion, supervise, other, simulate: processor time [s]; ``other`` is the coordinator's own.
+        segment, plan, motion, supervise, other: processor time [s]; ``supervise`` while the robot moves, ``other`` is
+            the coordinator's own outside the motion.
+        simulate: processor time of what stands for hardware [s].
         wall: time of this machine [s].
         text: of the loop.
     """
@@ -148,13 +152,19 @@ def run(trial: Trial, setting: CellSetting) -> Record:
         code, text = result.code.name, result.message
     except Exception as error:
         result, code, text = None, "INTERNAL", f"{type(error).__name__}: {error}"
-    stages = dict(cell.stopwatch.seconds)
-    stages["other"] = time.process_time() - started - sum(stages.values())
     values: dict[str, Any] = {name: getattr(trial, name) for name in Trial.__slots__ if name in COLUMNS}
-    values |= {name: stages.get(name, 0.0) for name in ("segment", "plan", "motion", "supervise", "other", "simulate")}
+    values |= _stages(cell.stopwatch.seconds, time.process_time() - started)
     values |= _pushes_of(result, trial) | _distances(before, cell.truth()) | _seen(result)
     values |= {"code": code, "text": text, "looks": cell.looks, "robot": cell.robot.moved}
     return Record(**values, wall=time.perf_counter() - wall)
+
+
+def _stages(seconds: Mapping[str, float], total: float) -> dict[str, float]:
+    """Processor time by stage; ``moving`` holds what passes during a motion, timing included."""
+    known = {name: seconds.get(name, 0.0) for name in ("segment", "plan", "motion", "render", "moving", "supervise")}
+    outside = sum(known[name] for name in ("segment", "plan", "motion", "render", "moving"))
+    simulate = known.pop("render") + known.pop("moving") - known["supervise"]
+    return {**known, "other": total - outside, "simulate": simulate}
 
 
 def _pushes_of(result: SingulationResult | None, trial: Trial) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from singulation_bringup.demo.replay_part import ReplayPart
 from singulation_bringup.demo.run_lock import only_demo
 from singulation_bringup.demo.summary import Summary
 from singulation_bringup.demo.terminal import complain, say
+from singulation_bringup.run_page import PAGE, write_page
 from singulation_core import ResultCode, SingulationError
 from singulation_node.domain import reserved_domain
 from singulation_node.large_messages import prepare_for_large_messages
@@ -72,9 +73,10 @@ def _run(options: DemoOptions, paths: list[Path], recording: Recording | None) -
         code = EXIT_INTERRUPTED
     finally:
         summary.write(options.out)
-    say(f"\n{summary.as_text()}\nresults: {options.out}")
+        write_page(options.out)
+    say(f"\n{summary.as_text()}\nresults: {options.out}\npage: {options.out / PAGE}")
     if code == 0 and not options.headless:
-        webbrowser.open((options.out / "run.gif").as_uri())
+        webbrowser.open((options.out / PAGE).as_uri())
     return code
 
 

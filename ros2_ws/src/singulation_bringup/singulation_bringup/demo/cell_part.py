@@ -140,7 +140,13 @@ class CellPart:
         observer.wait(
             lambda: self._show_outcomes() or len(self._summary.pushes) >= len(answer.outcomes), 10.0, "the last outcome"
         )
+        self._note_stages(observer.wait(lambda: observer.status("singulate_node: stages"), 10.0, "times of the stages"))
         return answer
+
+    def _note_stages(self, status: dict[str, str]) -> None:
+        for stage in ("look", "plan", "push"):
+            entry = {"count": int(status[f"{stage} count"]), "seconds": float(status[f"{stage} [s]"])}
+            self._summary.stages[stage] = entry
 
     def _show_outcomes(self) -> bool:
         """Note and draw what has come; never true, so that waiting goes on."""

@@ -104,6 +104,6 @@ def _parser() -> argparse.ArgumentParser:
         "--headless",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="open no window; --no-headless shows the animation at the end",
+        help="open no window; --no-headless shows the page of the run at the end",
     )
     return parser

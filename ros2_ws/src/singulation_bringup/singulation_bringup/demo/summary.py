@@ -17,7 +17,8 @@ class Summary:
     """Filled while the demo runs, written whatever happens.
 
     ``singulation_distance`` and ``smallest_gap`` [m] have one value before the first push and one after each;
-    ``min_gap`` [m] is the gap that counts as separated.
+    ``min_gap`` [m] is the gap that counts as separated; ``stages`` says how often the loop looked, planned and pushed,
+    and how long that took in all [s].
     """
 
     code: ResultCode = ResultCode.OK
@@ -29,6 +30,7 @@ class Summary:
     singulation_distance: list[float] = field(default_factory=list)
     smallest_gap: list[float] = field(default_factory=list)
     min_gap: float | None = None
+    stages: dict[str, dict[str, float]] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
     files: list[str] = field(default_factory=list)
 
@@ -65,6 +67,7 @@ class Summary:
             "singulation_distance": self.singulation_distance,
             "smallest_gap": self.smallest_gap,
             "min_gap": self.min_gap,
+            "stages": self.stages,
             "seconds": {stage: round(value, 3) for stage, value in self.seconds.items()},
             "files": self.files,
         }
@@ -86,6 +89,7 @@ class Summary:
                 lines.append(_row(name, f"{distance:.3f}", f"{1e3 * gap:.1f} mm", push))
         if self.loop_code is not None:
             lines.append(f"  {self.loop_code.name}: {self.loop_message}")
+        lines += [_stage_line(name, **stage) for name, stage in self.stages.items()]
         lines += ["", "seconds: " + ", ".join(f"{stage} {value:.1f}" for stage, value in self.seconds.items())]
         return "\n".join(lines) + "\n"
 
@@ -120,6 +124,10 @@ def _frame_line(frame: dict[str, Any]) -> str:
     push = frame["push"]
     plan = f"push object {push['target_id']} ({push['policy']})" if push else frame["message"]
     return f"{frame['source']}: {len(frame['objects'])} objects, {plan}"
+
+
+def _stage_line(name: str, count: float, seconds: float) -> str:
+    return f"  {name:<8} {count:.0f} times, {seconds / max(count, 1.0):.2f} s each"
 
 
 def _row(name: str, distance: str, gap: str, push: str) -> str:

@@ -9,6 +9,7 @@ from singulation_bringup.run_page.markup import Markup, number, table, tag
 from singulation_bringup.run_page.table_view import Window
 
 _MM = 1e3
+_STAGES = {"look": "trigger, cloud, segmentation", "plan": "the next push", "push": "motion plan and motion"}
 
 
 def heading(run: RunFolder) -> Markup:
@@ -96,7 +97,7 @@ def clouds(run: RunFolder) -> Markup:
 
 
 def timings(run: RunFolder) -> Markup:
-    """Wall time of each stage."""
+    """Wall time of each part of the demo, and of each step of the loop."""
     seconds = {name: float(value) for name, value in run.summary["seconds"].items()}
     total = seconds.pop("total", sum(seconds.values())) or 1.0
     cells: list[Markup] = []
@@ -107,7 +108,23 @@ def timings(run: RunFolder) -> Markup:
         "section",
         tag("h2", f"Where the {total:.0f} seconds went"),
         tag("dl", *cells, class_="times"),
+        _stages(run.summary.get("stages") or {}),
     )
+
+
+def _stages(stages: dict[str, Any]) -> Markup:
+    if not stages:
+        return Markup("")
+    rows = [
+        [f"{name}: {_STAGES.get(name, '')}".rstrip(": "), str(stage["count"]), *_per_step(stage)]
+        for name, stage in stages.items()
+    ]
+    return table("Steps of the closed loop, on the clock on the wall", ["step", "times", "each [s]", "all [s]"], rows)
+
+
+def _per_step(stage: dict[str, Any]) -> tuple[str, str]:
+    mean = stage["seconds"] / stage["count"] if stage["count"] else None
+    return number(mean, 2), number(stage["seconds"], 1)
 
 
 def _verdict(what: str, result: dict[str, Any]) -> Markup:

@@ -173,7 +173,11 @@ class PushWorld:
         self._space.collision_bias = usual
 
     def poses(self) -> FloatArray:
-        """(n, 3) x, y [m] of the centroids and the turn since the beginning [rad], in the order of the arrangement."""
+        """(n, 3) x, y [m] of the centroids and the turn since the beginning [rad], in the order of the arrangement.
+
+        Raises:
+            SingulationError: ``INTERNAL``: the solver diverged.
+        """
         inner = block_poses(self._blocks)
         if not np.isfinite(inner).all():
             raise SingulationError(

@@ -5,8 +5,8 @@ import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from singulation_core import Arrangement, Push, SingulationError, singulation_distance
-from singulation_core.push_world import simulate_push
+from singulation_core import Push, SingulationError, singulation_distance
+from singulation_core.push_world import PushPhysics, simulate_push
 from singulation_planner.benchmark.generators import generate
 from singulation_planner.benchmark.record import BEST_MODE, Job, Record
 from singulation_planner.benchmark.scenario import Scenario
@@ -50,14 +50,16 @@ def evaluate(task: SceneTask) -> list[Record]:
 
 def _result(setting: Setting, scenario: Scenario, job: Job) -> Record:
     before = singulation_distance(scenario.arrangement, scenario.unit)
-    after, code, text, simulating = before, "OK", "", 0.0
+    after = judged = before
+    code, text, simulating = "OK", "", 0.0
     started = planned = time.thread_time()
     try:
         push = plan(setting, scenario, job)
         planned = time.thread_time()
-        moved = perform(setting, scenario.arrangement, push)
+        outcome = _spread_after(setting, scenario, push, setting.physics)
         simulating = time.thread_time() - planned
-        after = singulation_distance(moved, scenario.unit)
+        judged = outcome if setting.judge is None else _spread_after(setting, scenario, push, setting.judge)
+        after = outcome
     except SingulationError as error:
         code, text = error.code.name, error.message
         planned = max(planned, time.thread_time() - simulating)
@@ -75,6 +77,7 @@ def _result(setting: Setting, scenario: Scenario, job: Job) -> Record:
         scenario.unit,
         before,
         after,
+        judged,
         planned - started,
         simulating,
         text,
@@ -102,6 +105,6 @@ def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
     )
 
 
-def perform(setting: Setting, arrangement: Arrangement, push: Push) -> Arrangement:
-    """The arrangement after a push, simulated with the physics of the setting's judge."""
-    return simulate_push(arrangement, push, setting.judge or setting.physics, setting.pusher)
+def _spread_after(setting: Setting, scenario: Scenario, push: Push, physics: PushPhysics) -> float:
+    moved = simulate_push(scenario.arrangement, push, physics, setting.pusher)
+    return singulation_distance(moved, scenario.unit)

@@ -34,6 +34,7 @@ class Record:
         unit: length that counts as 1 in s [m].
         before: s of the scene.
         after: s' after the push.
+        judged: the same by the judge of the setting, or ``after`` if it has none.
         planning: processor time of planning [s].
         simulating: processor time of simulating the push [s].
         text: of the error, if there was one.
@@ -50,6 +51,7 @@ class Record:
     unit: float
     before: float
     after: float
+    judged: float
     planning: float
     simulating: float
     text: str = ""

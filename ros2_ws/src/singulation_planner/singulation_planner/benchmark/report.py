@@ -11,7 +11,7 @@ from singulation_planner.benchmark.record import Record
 from singulation_planner.benchmark.settings import SETTINGS
 from singulation_planner.benchmark.simulators import simulator_table
 from singulation_planner.benchmark.store import export
-from singulation_planner.benchmark.tables import authors_table, table_one, table_two, write
+from singulation_planner.benchmark.tables import authors_table, judged_table, table_one, table_two, write
 from singulation_planner.benchmark.timing import measure, measure_pushes, timing_table
 
 _COUNTS = (3, 5, 8, 10, 15, 30, 60, 120)
@@ -31,6 +31,8 @@ def run_report(records: Sequence[Record], out: Path) -> str:
         texts.append(table_one(results, about["text"]))
         if about["name"] == "authors":
             texts[-1] += "\n" + authors_table(results)
+        if about["judge"]:
+            texts[-1] += "\n" + judged_table(results)
         write(out, "table_1", texts[-1])
         figure_six(results, out / "figure_6.png")
     if (results["contact_mode"] != "single_point").any():

@@ -101,6 +101,17 @@ def authors_table(results: pd.DataFrame) -> str:
     return table(header, rows)
 
 
+def judged_table(results: pd.DataFrame) -> str:
+    """The same pushes simulated once more by the judge of the setting, Brute Force's too."""
+    single = results[(results["contact_mode"] == _POINT[0]) & (results["fits"] == _POINT[1])]
+    gain = gains(single.assign(after=single["judged"]))
+    rows = [
+        [label(name), *[_of_brute_force(gain.query(query), name).percent() for query in _CASES.values()]]
+        for name in in_order(set(single["policy"]))
+    ]
+    return table(["policy (% of BF, judged)", *_CASES], rows)
+
+
 def _texts(name: str) -> list[str]:
     return [f"{value:.1f}" for value in AUTHORS_CODE[name]]
 

@@ -1,15 +1,16 @@
 """What a push would carry over the edge of the workspace."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.types import IntArray
 
 _INWARDS = 0.5  # share of its way by which an object that may stick out already has to move inwards
 _SPREAD = np.deg2rad(30.0)  # between the line of centres and the direction in which one block moves another
 
 
-@njit(cache=True)
+@compiled_part
 def _stays(normals: FloatArray, limits: FloatArray, x: float, y: float, radius: float, mx: float, my: float) -> bool:
     """Whether a disc moved by (mx, my) ends inside, or else was brought well away from the edge in question."""
     for k in range(len(limits)):
@@ -20,7 +21,7 @@ def _stays(normals: FloatArray, limits: FloatArray, x: float, y: float, radius: 
     return True
 
 
-@njit(cache=True)
+@compiled_part
 def _stays_if_pushed_on(
     normals: FloatArray,
     limits: FloatArray,
@@ -47,7 +48,7 @@ def _stays_if_pushed_on(
     return True
 
 
-@njit(cache=True)
+@compiled_part
 def _pushed_directly(
     centroids: FloatArray,
     radii: FloatArray,
@@ -69,7 +70,7 @@ def _pushed_directly(
             moved[j] = max(0.0, travel - max(0.0, along - np.sqrt(radii[j] ** 2 - aside**2)))
 
 
-@njit(cache=True)
+@compiled_part
 def _passed_on(
     centroids: FloatArray, radii: FloatArray, i: int, j: int, dx: float, dy: float, way: float, margin: float
 ) -> float:
@@ -82,7 +83,7 @@ def _passed_on(
     return way - max(0.0, along - np.sqrt(reach * reach - across * across))
 
 
-@njit(cache=True)
+@compiled_maker
 def carried_over(
     centroids: FloatArray,
     radii: FloatArray,
@@ -136,3 +137,38 @@ def carried_over(
                 if not _stays_if_pushed_on(normals, limits, x, y, radii[j], dx, dy, angle, way):
                     return True
     return False
+
+
+@compiled_maker
+def mark_carried_over(
+    centroids: FloatArray,
+    radii: FloatArray,
+    normals: FloatArray,
+    limits: FloatArray,
+    targets: IntArray,
+    starts: FloatArray,
+    directions: FloatArray,
+    half_widths: FloatArray,
+    travel: float,
+    margin: float,
+    status: IntArray,
+    feasible: int,
+    over_edge: int,
+) -> None:
+    """Give ``status`` (m,) ``over_edge`` where it is ``feasible`` and ``carried_over`` says so; the rest as there."""
+    for c in range(len(targets)):
+        if status[c] == feasible and carried_over(
+            centroids,
+            radii,
+            normals,
+            limits,
+            targets[c],
+            starts[c, 0],
+            starts[c, 1],
+            directions[c, 0],
+            directions[c, 1],
+            half_widths[targets[c]],
+            travel,
+            margin,
+        ):
+            status[c] = over_edge

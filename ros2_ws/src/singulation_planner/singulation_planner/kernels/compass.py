@@ -1,8 +1,8 @@
 """Directions that turn with the scene, and orders that do not hang on rounding errors."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
@@ -10,7 +10,7 @@ _DEGENERATE = 1e-6  # in units of the scale; a shorter vector has no direction
 _RESOLUTION = 1e9  # scores closer than a billionth of the scale are equal
 
 
-@njit(cache=True)
+@compiled_maker
 def away(centroids: FloatArray, index: int, scale: float) -> FloatArray:
     """(2,) unit vector from the mean of all centroids to that of object ``index``.
 
@@ -35,7 +35,7 @@ def away(centroids: FloatArray, index: int, scale: float) -> FloatArray:
     return np.array((vx / length, vy / length))
 
 
-@njit(cache=True)
+@compiled_maker
 def fan(first: FloatArray, count: int) -> FloatArray:
     """(count, 2) evenly spread unit vectors, counter-clockwise from ``first``."""
     directions = np.empty((count, 2))
@@ -46,7 +46,7 @@ def fan(first: FloatArray, count: int) -> FloatArray:
     return directions
 
 
-@njit(cache=True)
+@compiled_maker
 def ascending(scores: FloatArray, scale: float) -> IntArray:
     """Order of a few dozen scores, smallest first; those that differ by less than rounding errors keep their order."""
     n = len(scores)

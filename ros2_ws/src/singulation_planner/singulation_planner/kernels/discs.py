@@ -10,7 +10,6 @@ from numba import njit
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
-_STEPS = 4  # in which the pushed block goes its way
 _FLOOR = 0.05  # smallest distance that counts, in units of the scale, as in the singulation distance
 
 
@@ -87,8 +86,7 @@ def disc_scores(
     centroids: FloatArray,
     gaps: FloatArray,
     targets: IntArray,
-    directions: FloatArray,
-    ways: FloatArray,
+    paths: FloatArray,
     scale: float,
     width: float,
     weights: FloatArray,
@@ -100,8 +98,7 @@ def disc_scores(
         centroids: (n, 2) [m].
         gaps: (n, n) gaps between the outlines [m], the diagonal is not read.
         targets: (m,) the blocks that are pushed.
-        directions: (m, 2) unit vectors.
-        ways: (m,) how far the target would go alone [m].
+        paths: (m, k, 2) displacements of the targets on their way [m].
         scale: mean bounding radius [m].
         width: gap beyond which nothing is gained [m].
         weights: of the change of the mean log distance and of the mean gap (both without unit).
@@ -116,13 +113,13 @@ def disc_scores(
     after, moved = np.empty((n, 2)), np.empty(n)
     queue, rank = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
     for c in range(len(targets)):
-        after[:] = centroids
-        moved[:] = 0.0
+        for j in range(n):  # whole arrays would compile three times as long
+            after[j, 0], after[j, 1], moved[j] = centroids[j, 0], centroids[j, 1], 0.0
         target = targets[c]
         moved[target] = 1.0
-        for _ in range(_STEPS):
-            after[target, 0] += directions[c, 0] * ways[c] / _STEPS
-            after[target, 1] += directions[c, 1] * ways[c] / _STEPS
+        for step in range(paths.shape[1]):
+            after[target, 0] = centroids[target, 0] + paths[c, step, 0]
+            after[target, 1] = centroids[target, 1] + paths[c, step, 1]
             _spread(after, contact, target, queue, rank, moved)
         scores[c] = weights[0] * _log_gain(centroids, after, moved, _FLOOR * scale)
         if weights[1] != 0.0:

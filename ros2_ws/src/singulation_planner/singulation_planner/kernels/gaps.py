@@ -81,41 +81,66 @@ def _nearest_gaps(
 
 
 @njit(cache=True)
-def mean_clearances(
+def _log_change(before: FloatArray, after: FloatArray, moved: IntArray, floor: float) -> float:
+    """Change of the mean log distance of all pairs."""
+    n, total = len(before), 0.0
+    for i in range(n):
+        if moved[i] == 0:
+            continue
+        ratio = 1.0
+        for j in range(n):
+            if j == i or (moved[j] != 0 and j < i):
+                continue
+            dx, dy = after[j, 0] - after[i, 0], after[j, 1] - after[i, 1]
+            ex, ey = before[j, 0] - before[i, 0], before[j, 1] - before[i, 1]
+            ratio *= max(dx * dx + dy * dy, floor * floor) / max(ex * ex + ey * ey, floor * floor)
+        total += 0.5 * np.log(ratio)
+    return float(total / (0.5 * n * (n - 1)))
+
+
+@njit(cache=True)
+def outcome_values(
     outlines: FloatArray,
     firsts: IntArray,
-    centroids: FloatArray,
     radii: FloatArray,
     gaps: FloatArray,
+    before: FloatArray,
     poses: FloatArray,
     width: float,
-    values: FloatArray,
+    floor: float,
+    changes: FloatArray,
+    clearances: FloatArray,
 ) -> None:
-    """Mean over the blocks of the gap to the nearest other one, at most ``width``, in units of it.
+    """What pushes changed.
 
     Args:
         outlines: (v, 2) vertices around their centroids [m].
         firsts: (n + 1,) where each outline begins.
-        centroids, radii: (n, 2), (n,) before the pushes [m].
+        radii: (n,) bounding radii [m].
         gaps: (n, n) before the pushes [m].
-        poses: (m, n, 3) x, y [m], turn [rad] after each push; NaN gives NaN.
-        width: gap beyond which nothing is gained [m].
-        values: (m,), written.
+        before: (n, 3) x, y [m], turn [rad].
+        poses: (m, n, 3) after each push; NaN gives NaN.
+        width: gap beyond which nothing is gained [m]; 0: clearances are not asked for.
+        floor: smallest distance that counts [m].
+        changes: (m,) written: change of the mean log distance of all pairs.
+        clearances: (m,) written: mean over the blocks of the gap to the nearest other one, in units of ``width`` and
+            at most 1.
     """
     n = len(radii)
     corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n, dtype=np.int64)
     for c in range(len(poses)):
         pose = poses[c]
+        changes[c], clearances[c] = np.nan, 0.0
         if np.isnan(pose[0, 0]):
-            values[c] = np.nan
             continue
         for i in range(n):
-            way = max(abs(pose[i, 0] - centroids[i, 0]), abs(pose[i, 1] - centroids[i, 1]))
-            moved[i] = 1 if max(way, abs(pose[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0
-            _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)
+            way = max(abs(pose[i, 0] - before[i, 0]), abs(pose[i, 1] - before[i, 1]))
+            moved[i] = 1 if max(way, abs(pose[i, 2] - before[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0
             nearest[i] = width
-        _nearest_gaps(pose, moved, radii, corners, firsts, gaps, nearest)
-        total = 0.0
-        for i in range(n):
-            total += max(0.0, nearest[i])
-        values[c] = total / (n * width)
+        changes[c] = _log_change(before, pose, moved, floor)
+        if width > 0.0:
+            for i in range(n):
+                _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)
+            _nearest_gaps(pose, moved, radii, corners, firsts, gaps, nearest)
+            for i in range(n):
+                clearances[c] += max(0.0, nearest[i]) / (n * width)

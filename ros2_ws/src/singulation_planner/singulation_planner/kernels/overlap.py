@@ -1,13 +1,13 @@
 """Overlap of all pairs of convex outlines."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
 
-@njit(cache=True)
+@compiled_part
 def _widest_gap(vertices: FloatArray, first: int, last: int, other_first: int, other_last: int) -> float:
     """Largest gap between two outlines along the outward edge normals of the first [m]; negative: overlap."""
     widest = -np.inf
@@ -23,7 +23,7 @@ def _widest_gap(vertices: FloatArray, first: int, last: int, other_first: int, o
     return widest
 
 
-@njit(cache=True)
+@compiled
 def deepest_overlap(
     centroids: FloatArray, radii: FloatArray, vertices: FloatArray, firsts: IntArray, tolerance: float
 ) -> tuple[int, int, float]:

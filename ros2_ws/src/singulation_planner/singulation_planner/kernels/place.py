@@ -1,8 +1,8 @@
 """Where a pusher starts, whether it is free there, and what the push would carry along."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
@@ -14,7 +14,7 @@ _SINGLE_POINT, _EDGE, _TWO_POINT = 0, 1, 2
 Shapes = tuple[FloatArray, FloatArray, FloatArray, IntArray]
 
 
-@njit(cache=True)
+@compiled_part
 def _disc_contact(
     vertices: FloatArray, first: int, last: int, x: float, y: float, dx: float, dy: float, radius: float
 ) -> float:
@@ -38,7 +38,7 @@ def _disc_contact(
     return contact
 
 
-@njit(cache=True)
+@compiled_part
 def _strip_contact(
     vertices: FloatArray, first: int, last: int, x: float, y: float, dx: float, dy: float, half: float
 ) -> float:
@@ -58,7 +58,7 @@ def _strip_contact(
     return contact
 
 
-@njit(cache=True)
+@compiled_part
 def _gap(vertices: FloatArray, first: int, last: int, x: float, y: float) -> float:
     """Signed distance of a point to a convex outline [m], negative inside."""
     outward, squared = -np.inf, np.inf
@@ -74,7 +74,7 @@ def _gap(vertices: FloatArray, first: int, last: int, x: float, y: float) -> flo
     return np.sqrt(squared) if outward > 0.0 else outward
 
 
-@njit(cache=True)
+@compiled_part
 def _rectangle_apart(
     vertices: FloatArray,
     first: int,
@@ -102,7 +102,7 @@ def _rectangle_apart(
     return u_min >= front or u_max <= -back or w_min >= half or w_max <= -half
 
 
-@njit(cache=True)
+@compiled_part
 def _start(
     mode: int,
     from_circle: bool,
@@ -134,7 +134,7 @@ def _start(
     return min(contact, -np.sqrt(max(0.0, whole * whole - offset * offset)))
 
 
-@njit(cache=True)
+@compiled_part
 def _fits(
     mode: int,
     shapes: Shapes,
@@ -166,7 +166,7 @@ def _fits(
     return True
 
 
-@njit(cache=True)
+@compiled_part
 def _inside(
     mode: int,
     walls: tuple[FloatArray, FloatArray],
@@ -190,7 +190,7 @@ def _inside(
     return True
 
 
-@njit(cache=True)
+@compiled_part
 def _place_one(
     mode: int,
     from_circle: bool,
@@ -226,7 +226,7 @@ def _place_one(
     return OUTSIDE
 
 
-@njit(cache=True)
+@compiled
 def place(
     modes: IntArray,
     from_circle: bool,

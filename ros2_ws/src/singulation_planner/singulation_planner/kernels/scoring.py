@@ -1,8 +1,8 @@
 """Sums over objects that the policies rank by: O(n) for one direction, O(n^2) for all objects."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
@@ -10,14 +10,14 @@ FIXED_DISC, ANY_MEMBER, GROWING_DISC = 0, 1, 2
 RAY, SEGMENT, LINE = 0, 1, 2
 
 
-@njit(cache=True)
+@compiled_part
 def _distance(points: FloatArray, i: int, j: int) -> float:
     """Distance of two points [m]; five times faster than hypot, whose care for huge numbers is not needed here."""
     dx, dy = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]
     return np.sqrt(dx * dx + dy * dy)
 
 
-@njit(cache=True)
+@compiled_maker
 def distance_sums(centroids: FloatArray, logarithmic: bool) -> FloatArray:
     """(n,) sums of the distances, or of their logarithms, from each centroid to all others."""
     n = len(centroids)
@@ -31,7 +31,7 @@ def distance_sums(centroids: FloatArray, logarithmic: bool) -> FloatArray:
     return sums
 
 
-@njit(cache=True)
+@compiled_part
 def _grow(centroids: FloatArray, radii: FloatArray, seed: int, number: int, rule: int, labels: IntArray) -> None:
     """Put every unlabelled object that the cluster of ``seed`` reaches into it, and repeat until none is left."""
     n = len(radii)
@@ -57,7 +57,7 @@ def _grow(centroids: FloatArray, radii: FloatArray, seed: int, number: int, rule
                     reach = max(reach, gap + radii[i])
 
 
-@njit(cache=True)
+@compiled_maker
 def cluster(centroids: FloatArray, radii: FloatArray, seed: int, rule: int) -> IntArray:
     """(n,) cluster numbers from 0, the cluster around ``seed``, in the order in which they are formed.
 
@@ -66,10 +66,10 @@ def cluster(centroids: FloatArray, radii: FloatArray, seed: int, rule: int) -> I
     n = len(radii)
     labels = np.full(n, -1)
     remoteness = np.zeros(n)
-    number = 0
+    number = -1
     while True:
-        _grow(centroids, radii, seed, number, rule, labels)
         number += 1
+        _grow(centroids, radii, seed, number, rule, labels)
         farthest = -1
         for i in range(n):
             remoteness[i] += _distance(centroids, i, seed)
@@ -80,7 +80,7 @@ def cluster(centroids: FloatArray, radii: FloatArray, seed: int, rule: int) -> I
         seed = farthest
 
 
-@njit(cache=True)
+@compiled_maker
 def path_distance_sums(
     points: FloatArray, radii: FloatArray, origin: int, directions: FloatArray, path: int, length: float
 ) -> FloatArray:

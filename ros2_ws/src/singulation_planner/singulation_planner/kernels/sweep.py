@@ -1,8 +1,8 @@
 """How far an object can go before it meets another, and how much stands in its way."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
@@ -10,7 +10,7 @@ from singulation_planner.kernels.types import IntArray
 _SHRINK = 0.02
 
 
-@njit(cache=True)
+@compiled_part
 def _vertex_to_edges(
     u: float,
     w: float,
@@ -36,7 +36,7 @@ def _vertex_to_edges(
     return nearest
 
 
-@njit(cache=True)
+@compiled_maker
 def free_travel(
     centroids: FloatArray,
     radii: FloatArray,
@@ -82,7 +82,7 @@ def free_travel(
     return free
 
 
-@njit(cache=True)
+@compiled_maker
 def obstructed_widths(
     centroids: FloatArray, vertices: FloatArray, firsts: IntArray, index: int, directions: FloatArray, reach: float
 ) -> FloatArray:

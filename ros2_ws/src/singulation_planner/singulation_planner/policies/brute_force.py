@@ -38,7 +38,11 @@ class Options:
 
 @policy(Options)
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
-    """All feasible pushes of the grid by simulated s' - s, best first."""
+    """All feasible pushes of the grid by simulated s' - s, best first.
+
+    Raises:
+        InvalidInputError: more objects than ``max_objects``.
+    """
     scene = task.scene
     if len(scene) > options.max_objects:
         raise InvalidInputError(

@@ -31,14 +31,15 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
     ranked = by_score(task.placer, objective)
     if options.budget > 0.0 and len(ranked):
         ordered = task.scene.in_order()
-        judge = Judge(task.placer, objective, _fast(task.physics), ordered)
+        judge = Judge(task.placer, objective, _fast(task.physics), ordered, options.worlds, task.seed)
         limit = math.ceil(options.rollouts * task.share)
         best = Search(task.placer, judge, limit, task.random(), deadline).run(ranked)
         if best is not None:
-            gain = relative_gain(best.change, ordered)
-            yield best.candidate._replace(
-                gains=np.array([gain]), values=np.array([best.value]), poses=best.poses[np.newaxis]
-            )
+            poses = best.poses[np.newaxis]
+            if np.isnan(poses).any():  # judged in other worlds; what is expected is told for the one seen
+                poses = judge.outcomes(best.proposal).poses
+            gain, value = np.array([relative_gain(best.change, ordered)]), np.array([best.value])
+            yield best.proposal.candidates._replace(gains=gain, values=value, poses=poses)
     yield ranked.candidates
 
 

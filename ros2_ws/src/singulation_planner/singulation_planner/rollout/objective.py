@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_planner.candidates import Candidates
 from singulation_planner.kernels.discs import disc_scores
-from singulation_planner.kernels.gaps import all_gaps, mean_clearances
+from singulation_planner.kernels.gaps import all_gaps, outcome_values
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.rollout.options import WIDTH, Options
 from singulation_planner.scene import Scene
@@ -35,16 +34,15 @@ class Objective:
     gaps: FloatArray
     outlines: FloatArray
 
-    def scores(self, candidates: Candidates, ways: FloatArray) -> FloatArray:
-        """(m,) values if blocks were discs; ``ways`` (m,): how far the target would go alone [m]."""
-        scores = np.empty(len(ways))
+    def scores(self, objects: IntArray, paths: FloatArray) -> FloatArray:
+        """(m,) values if blocks were discs and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
+        scores = np.empty(len(objects))
         scene = self.scene
         disc_scores(
             scene.centroids,
             self.gaps,
-            candidates.objects,
-            candidates.directions,
-            ways,
+            objects,
+            paths,
             scene.scale,
             self.width,
             self.weights,
@@ -52,21 +50,16 @@ class Objective:
         )
         return scores
 
-    def values(self, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(m,) values, and (m,) changes of s, of pushes that lead to ``poses`` (m, n, 3); NaN stays NaN."""
-        changes = _log_distances(poses[..., :2], self.scene.scale) - _log_distances(
-            self.scene.centroids, self.scene.scale
+    def values(self, before: FloatArray, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(m,) values, and (m,) changes of s, of pushes that lead from ``before`` (n, 3) to ``poses`` (m, n, 3)."""
+        scene = self.scene
+        changes, clearances = np.empty(len(poses)), np.empty(len(poses))
+        width = self.width if self.weights[1] > 0.0 else 0.0
+        floor = _FLOOR * scene.scale
+        outcome_values(
+            self.outlines, scene.firsts, scene.radii, self.gaps, before, poses, width, floor, changes, clearances
         )
-        return self.weights[0] * changes + self.weights[1] * self._clearances(poses), changes
-
-    def _clearances(self, poses: FloatArray) -> FloatArray:
-        values = np.zeros(len(poses))
-        if self.weights[1] != 0.0:
-            scene = self.scene
-            mean_clearances(
-                self.outlines, scene.firsts, scene.centroids, scene.radii, self.gaps, poses, self.width, values
-            )
-        return values
+        return self.weights[0] * changes + self.weights[1] * clearances, changes
 
 
 def make_objective(scene: Scene, options: Options) -> Objective:
@@ -80,9 +73,3 @@ def make_objective(scene: Scene, options: Options) -> Objective:
         all_gaps(scene.vertices, scene.firsts),
         scene.vertices - scene.centroids[owners],
     )
-
-
-def _log_distances(points: FloatArray, scale: float) -> FloatArray:
-    first, second = np.triu_indices(points.shape[-2], 1)
-    apart = points[..., first, :] - points[..., second, :]
-    return np.asarray(np.log(np.maximum(np.hypot(apart[..., 0], apart[..., 1]), _FLOOR * scale)).mean(axis=-1))

@@ -15,8 +15,8 @@ class Options:
     Attributes:
         objective: ``singulation_distance``: the largest s' (the paper's aim); ``clearance``: blocks with a gap of
             ``clearance_width`` all around, which is what a gripper needs.
-        budget: processor time for planning [ms]; 0: no simulation, the answer is that of the score. With a budget that
-            ends the search (less than some 20 ms) the answer depends on the speed of the machine.
+        budget: processor time for planning [ms]; 0: no simulation, the answer is that of the score. Otherwise at least
+            one push is simulated. Where the budget ends the search, the answer depends on the speed of the machine.
         rollouts: simulated pushes at most. Unlike the budget, it gives the same push on every machine.
         clearance_width: gap that is wide enough [m]; 0: 0.4 mean bounding radii.
         worlds: in how many sampled worlds (poses, friction, density) the best pushes are judged; 1: in the one seen.

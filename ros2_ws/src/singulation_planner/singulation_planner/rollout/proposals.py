@@ -1,6 +1,7 @@
 """Which pushes are tried: a grid ordered by score, and variations of pushes that turned out well."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -8,13 +9,17 @@ from singulation_core import ContactMode
 from singulation_core.polygon import FloatArray
 from singulation_planner.candidates import Candidates
 from singulation_planner.directions import ascending, away
+from singulation_planner.kernels.alone import paths_alone
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.placer import Placer
 from singulation_planner.rollout.objective import Objective
 
 _DIRECTIONS = 16
-_LINES = np.linspace(-0.6, 0.6, 7)  # beside the centroid [bounding radii]
-_GYRATION = 0.55  # radius of gyration of a block [bounding radii]
+# Lines beside the centroid [bounding radii]: for all directions, and for those that look best on these.
+_LINES, _MORE_LINES = np.array((0.0, -0.3, 0.3)), np.array((-0.15, 0.15, -0.45, 0.45, -0.6, 0.6, -0.75, 0.75))
+_PROMISING = 60  # directions, of all objects together, that get more lines
+_LINE_DISTANCE = 0.15  # of two lines of one direction [bounding radii]
+_STEPS, _FRICTION = 4, 0.5  # of the paths that the score assumes
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,51 +34,85 @@ class Proposals:
 
     def part(self, chosen: slice | IntArray) -> "Proposals":
         """Those that a slice or indices choose."""
-        one = self.candidates
-        kept = Candidates(one.objects[chosen], one.directions[chosen], one.offsets[chosen])
-        return Proposals(kept, self.starts[chosen])
+        objects, directions, offsets, *_ = self.candidates
+        return Proposals(Candidates(objects[chosen], directions[chosen], offsets[chosen]), self.starts[chosen])
+
+    def and_then(self, others: Self) -> "Proposals":
+        """These and the others."""
+        one, other = self.candidates, others.candidates
+        both = Candidates(
+            np.concatenate((one.objects, other.objects)),
+            np.concatenate((one.directions, other.directions)),
+            np.concatenate((one.offsets, other.offsets)),
+        )
+        return Proposals(both, np.concatenate((self.starts, others.starts)))
 
 
-def feasible(placer: Placer, candidates: Candidates) -> Proposals:
-    """Those of the candidates that the pusher can perform."""
+def feasible(placer: Placer, candidates: Candidates) -> tuple[Proposals, IntArray]:
+    """Those of the candidates that the pusher can perform, and their indices."""
     chosen, starts = placer.feasible(candidates)
     kept = Candidates(candidates.objects[chosen], candidates.directions[chosen], candidates.offsets[chosen])
-    return Proposals(kept, starts)
+    return Proposals(kept, starts), chosen
 
 
 def by_score(placer: Placer, objective: Objective) -> Proposals:
-    """All feasible pushes of the grid, best score first."""
-    found = feasible(placer, _grid(placer))
-    scores = objective.scores(found.candidates, _ways(placer, found.candidates))
-    return found.part(ascending(-scores))
+    """All feasible pushes of the grid, best score first; where the scores are best, the grid is finer."""
+    count = len(placer.scene)
+    first = np.array([np.arctan2(*away(placer.scene, index)[::-1]) for index in range(count)])
+    angles = (first[:, np.newaxis] + 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS).ravel()
+    objects = np.repeat(np.arange(count), _DIRECTIONS)
+    coarse, rows = feasible(placer, _on_lines(placer, objects, angles, _LINES))
+    scores = _scores(placer, objective, coarse)
+    finer = np.arange(len(angles))
+    if len(angles) > _PROMISING and len(scores):
+        ranked = rows[ascending(-scores)] // len(_LINES)
+        _, at = np.unique(ranked, return_index=True)
+        finer = ranked[np.sort(at)[:_PROMISING]]
+    fine, _ = feasible(placer, _on_lines(placer, objects[finer], angles[finer], _MORE_LINES))
+    scores = np.concatenate((scores, _scores(placer, objective, fine)))
+    return coarse.and_then(fine).part(ascending(-scores))
 
 
-def _grid(placer: Placer) -> Candidates:
-    scene = placer.scene
-    count = len(scene)
-    fan = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    first = np.array([np.arctan2(*away(scene, index)[::-1]) for index in range(count)])
-    angles = (first[:, None, None] + fan[:, None] + np.zeros(len(_LINES))).ravel()
-    offsets = (scene.radii[:, None, None] * (np.zeros((_DIRECTIONS, 1)) + _LINES)).ravel()
-    objects = np.repeat(np.arange(count), _DIRECTIONS * len(_LINES))
-    return Candidates(objects, np.column_stack((np.cos(angles), np.sin(angles))), offsets)
+def _on_lines(placer: Placer, objects: IntArray, angles: FloatArray, lines: FloatArray) -> Candidates:
+    """For each object and direction the pushes along all lines."""
+    many = np.repeat(objects, len(lines))
+    turned = np.repeat(angles, len(lines))
+    offsets = placer.scene.radii[many] * np.tile(lines, len(objects))
+    return Candidates(many, np.column_stack((np.cos(turned), np.sin(turned))), offsets)
 
 
-def _ways(placer: Placer, candidates: Candidates) -> FloatArray:
-    """How far the targets would go alone [m]: pushed beside its centroid, a block turns and lags behind."""
-    after_contact = placer.travel - float(placer.pusher[3])
-    if placer.mode is not ContactMode.SINGLE_POINT:
-        return np.full(len(candidates.objects), after_contact)
-    lever = candidates.offsets / (_GYRATION * placer.scene.radii[candidates.objects])
-    return np.asarray(after_contact / (1.0 + lever**2))
+def _scores(placer: Placer, objective: Objective, proposals: Proposals) -> FloatArray:
+    return objective.scores(proposals.candidates.objects, _paths(placer, proposals))
+
+
+def _paths(placer: Placer, proposals: Proposals) -> FloatArray:
+    """(m, k, 2) displacements of the push objects [m] if nothing else were there."""
+    scene, one = placer.scene, proposals.candidates
+    if placer.mode is not ContactMode.SINGLE_POINT:  # wide contacts hold their object
+        shares = np.arange(1, _STEPS + 1) / _STEPS
+        way = placer.travel - float(placer.pusher[3])
+        return np.asarray(way * one.directions[:, np.newaxis] * shares[:, np.newaxis])
+    paths = np.empty((len(proposals), _STEPS, 2))
+    paths_alone(
+        scene.centroids,
+        scene.vertices,
+        scene.firsts,
+        one.objects,
+        proposals.starts,
+        one.directions,
+        float(placer.pusher[0]),
+        placer.travel,
+        _FRICTION,
+        paths,
+    )
+    return paths
 
 
 def variations(placer: Placer, around: Candidates, width: float, count: int, random: np.random.Generator) -> Proposals:
-    """Feasible random variations of one candidate: ``width`` 1 is a step of the grid."""
+    """Feasible random variations of one candidate: ``width`` 1 is half a direction and two lines of the grid."""
     target = int(around.objects[0])
-    turns = width * 2.0 * np.pi / _DIRECTIONS * random.uniform(-1.0, 1.0, count)
-    shifts = width * (_LINES[1] - _LINES[0]) * random.uniform(-1.0, 1.0, count)
-    angles = np.arctan2(around.directions[0, 1], around.directions[0, 0]) + turns
-    offsets = around.offsets[0] + shifts * placer.scene.radii[target]
+    turns, shifts = width * random.uniform(-1.0, 1.0, (2, count))
+    angles = np.arctan2(around.directions[0, 1], around.directions[0, 0]) + turns * np.pi / _DIRECTIONS
+    offsets = around.offsets[0] + 2.0 * _LINE_DISTANCE * shifts * placer.scene.radii[target]
     ways = np.column_stack((np.cos(angles), np.sin(angles)))
-    return feasible(placer, Candidates(np.full(count, target), ways, offsets))
+    return feasible(placer, Candidates(np.full(count, target), ways, offsets))[0]

@@ -1,27 +1,28 @@
 """The search: a fixed sequence of simulations, cut off where budget or work limit end it, and the best so far."""
 
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_planner.candidates import Candidates
 from singulation_planner.placer import Placer
 from singulation_planner.rollout.judge import Judge, Outcomes
 from singulation_planner.rollout.proposals import Proposals, variations
 
-_BATCH = 8  # simulations between two looks at the clock
 _SCREENED, _REFINED = 64, 32  # simulated in turn: the next ones by score, variations of the best
+_BATCH, _BLOCKS = 8, 96  # simulations between two looks at the clock: at least, and times the number of blocks
+_REFINEMENTS = 4  # portions of the variations
 _NARROWER = 0.7  # shrinks the variations from batch to batch
+_FINALISTS = 16  # of those screened so far, judged in all worlds
 
 
 @dataclass(frozen=True, slots=True)
 class Best:
     """A push with its value, the change of s [1] and the poses (n, 3) that it is expected to lead to."""
 
-    candidate: Candidates
+    proposal: Proposals
     value: float
     change: float
     poses: FloatArray
@@ -38,38 +39,72 @@ class Search:
     deadline: float
     done: int = 0
     best: Best | None = None
+    nominal: Best | None = None
+    screened: list[tuple[float, int, Proposals]] = field(default_factory=list)
 
     def run(self, ranked: Proposals) -> Best | None:
         """Work through the sequence; None if nothing could be simulated."""
-        for batch in self._sequence(ranked):
-            left = self.limit - self.done
-            if left <= 0 or time.thread_time() >= self.deadline:
+        sequence = self._sequence(ranked) if self.judge.count == 1 else self._robust_sequence(ranked)
+        for batch, attempt, cost in sequence:
+            left = (self.limit - self.done) // cost
+            if left <= 0 or (self.done > 0 and time.thread_time() >= self.deadline):
                 break
-            self._try(batch.part(slice(left)))
-        return self.best
+            tried = batch.part(slice(left))
+            self.done += cost * len(tried)
+            if len(tried):
+                attempt(tried)
+        return self.best or self.nominal
 
-    def _sequence(self, ranked: Proposals) -> Iterator[Proposals]:
-        """What would be tried without any limit: does not depend on the limits, only on what was found before."""
-        at = 0
-        while at < len(ranked):
-            until = min(at + _SCREENED, len(ranked))
-            for begin in range(at, until, _BATCH):
-                yield ranked.part(slice(begin, min(begin + _BATCH, until)))
-            at = until
-            for step in range(_REFINED // _BATCH):
-                if self.best is not None:
-                    width = _NARROWER**step
-                    yield variations(self.placer, self.best.candidate, width, _BATCH, self.random)
+    def _sequence(self, ranked: Proposals) -> Iterator[tuple[Proposals, Callable[[Proposals], None], int]]:
+        """What would be tried without any limit: depends on what was found before, but not on the limits."""
+        yield ranked.part(slice(1)), self._screen, 1
+        for at in range(1, len(ranked), _SCREENED):
+            for batch in self._batches(ranked.part(slice(at, at + _SCREENED))):
+                yield batch, self._screen, 1
+            for step in range(_REFINEMENTS):
+                if self.nominal is not None:
+                    around, count = self.nominal.proposal.candidates, _REFINED // _REFINEMENTS
+                    yield variations(self.placer, around, _NARROWER**step, count, self.random), self._screen, 1
 
-    def _try(self, batch: Proposals) -> None:
-        self.done += len(batch)
-        if len(batch):
-            outcomes = self.judge.outcomes(batch)
-            self._keep_best(batch.candidates, outcomes)
+    def _robust_sequence(self, ranked: Proposals) -> Iterator[tuple[Proposals, Callable[[Proposals], None], int]]:
+        """The same for choices that must hold in all worlds: screen in the one seen, then judge the best in all."""
+        yield ranked.part(slice(1)), self._screen, 1
+        yield ranked.part(slice(1)), self._judge, self.judge.count
+        for at in range(1, len(ranked), _SCREENED):
+            for batch in self._batches(ranked.part(slice(at, at + _SCREENED))):
+                yield batch, self._screen, 1
+            self.screened.sort(key=lambda one: one[:2])
+            finalists, self.screened = self.screened[:_FINALISTS], self.screened[_FINALISTS:]
+            for _, _, proposal in finalists:
+                yield proposal, self._judge, self.judge.count
 
-    def _keep_best(self, tried: Candidates, outcomes: Outcomes) -> None:
-        values = np.round(np.nan_to_num(outcomes.values, nan=-np.inf), 9)
-        k = int(np.argmax(values))
-        if np.isfinite(values[k]) and (self.best is None or values[k] > self.best.value):
-            candidate = Candidates(tried.objects[[k]], tried.directions[[k]], tried.offsets[[k]])
-            self.best = Best(candidate, float(values[k]), float(outcomes.changes[k]), outcomes.poses[k])
+    def _batches(self, proposals: Proposals) -> Iterator[Proposals]:
+        size = max(_BATCH, _BLOCKS // len(self.placer.scene))
+        for begin in range(0, len(proposals), size):
+            yield proposals.part(slice(begin, begin + size))
+
+    def _screen(self, tried: Proposals) -> None:
+        outcomes = self.judge.outcomes(tried)
+        self.nominal = _better(self.nominal, tried, outcomes)
+        if self.judge.count > 1:
+            for k, value in enumerate(_comparable(outcomes.values).tolist()):
+                if np.isfinite(value):
+                    self.screened.append((-value, self.done + k, tried.part(slice(k, k + 1))))
+
+    def _judge(self, tried: Proposals) -> None:
+        outcomes = self.judge.in_all_worlds(tried)
+        self.best = _better(self.best, tried, outcomes)
+
+
+def _comparable(values: FloatArray) -> FloatArray:
+    """Rounded, so that equal values are equal whatever their rounding errors; failures last."""
+    return np.asarray(np.round(np.where(np.isnan(values), -np.inf, values), 9))
+
+
+def _better(best: Best | None, tried: Proposals, outcomes: Outcomes) -> Best | None:
+    """The best of what was known and what was tried."""
+    values = _comparable(outcomes.values)
+    k = int(np.argmax(values))
+    if not np.isfinite(values[k]) or (best is not None and values[k] <= best.value):
+        return best
+    return Best(tried.part(slice(k, k + 1)), float(values[k]), float(outcomes.changes[k]), outcomes.poses[k])

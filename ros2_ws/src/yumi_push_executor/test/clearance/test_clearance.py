@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from singulation_core import Arrangement, CellGeometry, PlanarObject
 from yumi_push_executor import YumiArm
@@ -125,3 +127,17 @@ def test_every_shape_belongs_to_a_part():
         assert set(parts) == set(range(1, 8)) | {GRIPPER, FINGER}
         assert parts.count(FINGER) == 4
     assert {shape.part for shape in shapes if not shape.arm} == {0}
+
+
+@given(st.sampled_from(("left", "right")), st.sampled_from(list(Stage)), st.integers(0, 2**32 - 1))
+def test_what_is_left_out_as_far_away_could_not_have_met(name, stage, seed):
+    random = np.random.default_rng(seed)
+    other = "right" if name == "left" else "left"
+    blocks = [PlanarObject(k, SQUARE + random.uniform(-0.15, 0.15, 2), height=0.05) for k in range(3)]
+    scene = build_scene(name, CELL, Arrangement(blocks), [0], np.array((0.03, 0.02)), 0.05)
+    postures = {name: CLEAR_VIEW[name], other: BRANCHES[0][other] + random.normal(0.0, 0.3, 7)}
+    checker = Checker(scene, postures, 0.02, Margins())
+    along = BRANCHES[random.integers(3)][name] + random.normal(0.0, 0.3, 7) + random.normal(0.0, 0.1, (4, 7))
+    slack = [checker.smallest_slack(q, stage)[0] for q in along]
+    found = checker.first_contact(along, stage)
+    assert (len(along) if found is None else found[0]) == next((k for k, one in enumerate(slack) if one < 0.0), 4)

@@ -1,9 +1,11 @@
 """A driver node as the cell has one: takes trajectories and jaw openings, publishes joint and driver states.
 
-It makes the time as well: five times as fast as the wall's where the machine allows, and never ahead of its own states.
+It makes the time as well: five times as fast as the wall's where the machine allows, never ahead of its own states, and
+not before what is under way has been heard: a busy machine makes everything slower, and nothing late.
 """
 
 import threading
+import time
 
 import numpy as np
 from fake_robot import ARMS, CYCLE, HOME, FakeArm
@@ -21,6 +23,7 @@ from yumi_push_executor.supervision import Phase, Trajectory
 
 PERIOD = 0.024  # s of its own time between joint states
 SPEED = 5.0
+PATIENCE = 2.0  # s of the wall's time that a message may be under way; after that it counts as lost
 NAMES = {arm: tuple(f"yumi_rob{arm[0]}_joint_{number}" for number in range(1, 8)) for arm in ARMS}
 FINGERS = {"left": "gripper_l_joint", "right": "gripper_r_joint"}
 
@@ -41,6 +44,9 @@ class FakeDriver(Node):
             self._listen(arm)
         self._ticks = self.create_publisher(Clock, "/clock", STATE)
         self.time = 1000.0
+        self.said = lambda publisher: None  # what happens before joint states are published
+        self.under_way = lambda: False  # whether somebody has still to hear of something
+        self._ticked = time.monotonic()
         # Not in the group of the subscriptions: a late machine would then let time pass and no order come through.
         self.create_timer(PERIOD / SPEED, self._tick, callback_group=MutuallyExclusiveCallbackGroup())
 
@@ -85,6 +91,10 @@ class FakeDriver(Node):
                 self.arms[arm].order(Trajectory(times, positions, velocities), self.time)
 
     def _tick(self):
+        now = time.monotonic()
+        if self.under_way() and now - self._ticked < PATIENCE:
+            return
+        self._ticked = now
         with self.lock:
             for _ in range(round(PERIOD / CYCLE)):
                 self.time += CYCLE
@@ -98,6 +108,7 @@ class FakeDriver(Node):
             message = self.change(self._message(stamp))
         self._ticks.publish(Clock(clock=stamp))
         if message is not None:
+            self.said(self._states)
             self._states.publish(message)
         self.state.header.stamp = stamp
         self._driver.publish(self.state)

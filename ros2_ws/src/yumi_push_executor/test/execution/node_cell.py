@@ -1,6 +1,7 @@
 """Executor node, driver node and client in one process, with short motions of a scripted planner."""
 
 import threading
+from dataclasses import replace
 
 import numpy as np
 from fake_driver import FakeDriver
@@ -15,7 +16,7 @@ from singulation_core.conversions import stamp_of
 from singulation_node.qos import LATCHED, STATE
 from singulation_node.testing import Mailbox, wait_until
 from yumi_push_executor.executor_node import ExecutorNode
-from yumi_push_executor.supervision import Phase, Segment
+from yumi_push_executor.supervision import ArmOrder, Phase, Segment
 
 # A busy test machine is no fault of the robot.
 PATIENT = {"state_age": 0.6, "state_delay": 2.0, "blind_time": 5.0, "lag": 0.6, "start_latency": 1.5, "driver_age": 3.0}
@@ -59,11 +60,23 @@ class ScriptedPlanner:
 
 
 class ScriptedExecutor(ExecutorNode):
-    """The node with that planner."""
+    """The node with that planner; ``sent`` counts the trajectories it has ordered."""
 
     def __init__(self, **options):
         self.planner = ScriptedPlanner()
+        self.sent = 0
         super().__init__(**options)
+
+    def configure(self):
+        super().configure()
+        controllers, send = self._controllers, self._controllers.send
+
+        def counted(order):
+            self.sent += isinstance(order, ArmOrder)
+            send(order)
+
+        controllers.send = counted
+        self._execution._outside = replace(self._execution._outside, send=counted)
 
     def make_planner(self):
         return self.planner
@@ -84,6 +97,18 @@ class NodeCell:
         self.objects = self.client.create_publisher(Arrangement, "objects", STATE)
         self.pushes = self.client.create_publisher(PushTrajectory, "push", STATE)
         self.phases = []
+        self._heard = None  # by the executor when the newest joint states were published
+        self.driver.said, self.driver.under_way = self._said, self._under_way
+
+    def _said(self, publisher):
+        view = getattr(self.executor, "_view", None)
+        listens = view is not None and publisher.get_subscription_count() > 0
+        self._heard = (view, view.messages) if listens else None
+
+    def _under_way(self):
+        """Whether the newest joint states or an order have still to be heard."""
+        states = self._heard is not None and self._heard == (self.executor._view, self.executor._view.messages)
+        return states or len(self.driver.trajectories) < self.executor.sent
 
     def start(self):
         assert self.executor.start()
@@ -99,14 +124,17 @@ class NodeCell:
     def heal(self):
         """Whatever a test has broken; both arms at home."""
         driver, planner = self.driver, self.executor.planner
+        wait_until(lambda: len(driver.trajectories) >= self.executor.sent, what="the last order")
         with driver.lock:
             driver.heal()
+            healed = driver.time
         planner.trouble, planner.arm, planner.duration = (lambda: None), "left", 0.3
         self.phases.clear()
         view = self.executor._view
         wait_until(
             lambda: (
                 view.watch.fault(self.executor.instant()) is None
+                and min(view.watch.latest.taken, view.driver.seen.time) > healed
                 and view.driver.mode == DriverState.MOTORS_ON
                 and view.driver.motion_enabled
                 and view.driver.calibrated["left"]

@@ -33,12 +33,12 @@ class Places(NamedTuple):
 
     Args:
         poses: (n, 3, 4) of ``tool0`` in the base frame.
-        origins: (n, 7, 3) of the joints [m].
+        links: (n, 7, 3, 4) of the joints, turned with them.
         jacobians: (n, 6, 7) of ``tool0``, linear above angular, base frame.
     """
 
     poses: FloatArray
-    origins: FloatArray
+    links: FloatArray
     jacobians: FloatArray
 
     def tips(self, offset: float) -> FloatArray:
@@ -50,7 +50,7 @@ def places(chain: Chain, postures: FloatArray) -> Places:
     """Forward kinematics of (n, 7) postures."""
     rows = np.array(postures, dtype=np.float64, order="C")
     n = len(rows)
-    found = Places(np.empty((n, 3, 4)), np.empty((n, _JOINTS, 3)), np.empty((n, 6, _JOINTS)))
+    found = Places(np.empty((n, 3, 4)), np.empty((n, _JOINTS, 3, 4)), np.empty((n, 6, _JOINTS)))
     compiled.places(chain.frames, rows, *found)
     return found
 
@@ -63,7 +63,7 @@ def tips(chain: Chain, postures: FloatArray, offset: float) -> FloatArray:
 def longest_step(chain: Chain, postures: FloatArray, offset: float) -> float:
     """Furthest that any joint or the tip moves between two of (n, 7) neighbouring postures [m]."""
     found = places(chain, postures)
-    points = np.concatenate((found.origins, found.tips(offset)[:, None]), axis=1)
+    points = np.concatenate((found.links[:, :, :, 3], found.tips(offset)[:, None]), axis=1)
     return float(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=2)).max(initial=0.0))
 
 
@@ -127,5 +127,5 @@ def _pose(matrix: FloatArray) -> FloatArray:
 
 
 def _room() -> compiled.Room:
-    shapes = ((3, 4), (_JOINTS, 3), (6, _JOINTS), (6, _JOINTS), 6, _JOINTS, _JOINTS)
+    shapes = ((3, 4), (_JOINTS, 3, 4), (6, _JOINTS), (6, _JOINTS), 6, _JOINTS, _JOINTS)
     return compiled.Room(*(np.empty(shape) for shape in shapes))

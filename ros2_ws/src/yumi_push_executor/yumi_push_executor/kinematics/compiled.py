@@ -21,14 +21,14 @@ class Room(NamedTuple):
     """Arrays that an iteration writes to.
 
     Args:
-        pose, origins, jacobian: see ``place``.
+        pose, links, jacobian: see ``place``.
         gram: (6, 7), see ``joint_step``.
         error: (6,) translation [m] and rotation vector [rad].
         drift, step: (7,) [rad].
     """
 
     pose: FloatArray
-    origins: FloatArray
+    links: FloatArray
     jacobian: FloatArray
     gram: FloatArray
     error: FloatArray
@@ -37,8 +37,8 @@ class Room(NamedTuple):
 
 
 @compiled
-def place(frames: FloatArray, q: FloatArray, pose: FloatArray, origins: FloatArray, jacobian: FloatArray) -> None:
-    """Pose (3, 4) of ``tool0``, joint origins (7, 3) and Jacobian (6, 7), linear above angular, for (7,) angles."""
+def place(frames: FloatArray, q: FloatArray, pose: FloatArray, links: FloatArray, jacobian: FloatArray) -> None:
+    """Poses (3, 4) of ``tool0`` and (7, 3, 4) of the joints; Jacobian (6, 7), linear above angular; for (7,) angles."""
     for i in range(3):
         for j in range(4):
             pose[i, j] = 1.0 if i == j else 0.0
@@ -55,10 +55,11 @@ def place(frames: FloatArray, q: FloatArray, pose: FloatArray, origins: FloatArr
             pose[i, 0] = cosine * x + sine * y
             pose[i, 1] = cosine * y - sine * x
             if k < 7:
-                origins[k, i] = pose[i, 3]
+                links[k, i, 0], links[k, i, 1], links[k, i, 2] = pose[i, 0], pose[i, 1], pose[i, 2]
+                links[k, i, 3] = pose[i, 3]
                 jacobian[3 + i, k] = pose[i, 2]
     for k in range(7):
-        x, y, z = (pose[0, 3] - origins[k, 0], pose[1, 3] - origins[k, 1], pose[2, 3] - origins[k, 2])
+        x, y, z = pose[0, 3] - links[k, 0, 3], pose[1, 3] - links[k, 1, 3], pose[2, 3] - links[k, 2, 3]
         jacobian[0, k] = jacobian[4, k] * z - jacobian[5, k] * y
         jacobian[1, k] = jacobian[5, k] * x - jacobian[3, k] * z
         jacobian[2, k] = jacobian[3, k] * y - jacobian[4, k] * x
@@ -66,11 +67,11 @@ def place(frames: FloatArray, q: FloatArray, pose: FloatArray, origins: FloatArr
 
 @compiled
 def places(
-    frames: FloatArray, postures: FloatArray, poses: FloatArray, origins: FloatArray, jacobians: FloatArray
+    frames: FloatArray, postures: FloatArray, poses: FloatArray, links: FloatArray, jacobians: FloatArray
 ) -> None:
     """``place`` for every row of (n, 7) postures."""
     for k in range(len(postures)):
-        place(frames, postures[k], poses[k], origins[k], jacobians[k])
+        place(frames, postures[k], poses[k], links[k], jacobians[k])
 
 
 @compiled
@@ -147,7 +148,7 @@ def solve(
 ) -> None:
     """Move ``q`` onto ``target``; see ``chain.solve``. What is left stays in ``room.error``."""
     for iteration in range(iterations + 1):
-        place(frames, q, room.pose, room.origins, room.jacobian)
+        place(frames, q, room.pose, room.links, room.jacobian)
         pose_error(target, room.pose, room.error)
         size = norm(room.error, 0, 6)
         drawn = iteration < iterations - 6
@@ -196,7 +197,7 @@ def follow_line(
         before = gone
         # Four corrections, then the rate at which the line goes on.
         for iteration in range(5):
-            place(frames, angles[n], room.pose, room.origins, room.jacobian)
+            place(frames, angles[n], room.pose, room.links, room.jacobian)
             pose_error(target, room.pose, room.error)
             misses[n] = norm(room.error, 0, 6)
             last = iteration == 4 or misses[n] < _EXACT

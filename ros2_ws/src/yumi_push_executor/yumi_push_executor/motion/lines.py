@@ -1,7 +1,7 @@
 """The straight parts of a push on one branch of one arm: down, push, up."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -42,15 +42,20 @@ class Lines:
         """(n, 7) way-points of all three [rad]."""
         return np.concatenate((self.down.positions, self.push.positions, self.up.positions))
 
+    @cached_property
+    def _extremes(self) -> FloatArray:
+        """(2, 7) lowest and highest angle of each joint [rad]."""
+        return np.array((self.positions.min(axis=0), self.positions.max(axis=0)))
+
     def turns(self, heading: float, margin: float) -> FloatArray:
         """(k,) angles by which the last joint may turn to bring the jaws to a heading [rad].
 
         The last joint's axis is the tool's: turning it turns the jaws and moves nothing else. More than one whole turn
         fits into its limits less ``margin`` [rad].
         """
-        last, turn = self.positions[:, 6], self.heading - heading
-        lowest = np.ceil((self.arm.lower[6] + margin - last.min() - turn) / (2.0 * np.pi))
-        highest = np.floor((self.arm.upper[6] - margin - last.max() - turn) / (2.0 * np.pi))
+        (low, high), turn = self._extremes[:, 6], self.heading - heading
+        lowest = np.ceil((self.arm.lower[6] + margin - low - turn) / (2.0 * np.pi))
+        highest = np.floor((self.arm.upper[6] - margin - high - turn) / (2.0 * np.pi))
         return np.asarray(turn + 2.0 * np.pi * np.arange(lowest, highest + 1.0))
 
     def turned(self, turn: float) -> "Lines":
@@ -60,7 +65,7 @@ class Lines:
 
     def room(self, turn: float = 0.0) -> tuple[float, int]:
         """Smallest distance of any joint to its limits [rad], and which joint (1..7 from the shoulder)."""
-        lowest, highest = self.positions.min(axis=0), self.positions.max(axis=0)
+        lowest, highest = self._extremes.copy()
         lowest[6] += turn
         highest[6] += turn
         room = np.minimum(lowest - self.arm.lower, self.arm.upper - highest)
@@ -120,9 +125,7 @@ def straight_line(
     Raises:
         SingulationError: ``UNREACHABLE`` with the way-point that is missed furthest.
     """
-    profile = Trapezoid(distance, speed, parameters.linear_acceleration)
-    times = profile.knots(KNOT_STEP)
-    gone, rate = profile.at(times)
+    times, gone, rate = _profile(distance, speed, parameters.linear_acceleration)
     draw = 0.0 if rest is None else _DRAW
     angles, rates, misses = chain.follow_line(arm.chain, q, direction, gone, q if rest is None else rest, draw)
     worst = int(misses.argmax())  # NaN counts as the largest
@@ -135,6 +138,14 @@ def straight_line(
     _require_within_limits(arm, angles, parameters.limit_margin, name)
     trajectory = Trajectory(times, angles, rates * rate[:, None])
     return slowed(trajectory, slowdown(trajectory, arm, parameters))
+
+
+@lru_cache(maxsize=64)  # the same for every branch of both arms
+def _profile(distance: float, speed: float, acceleration: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Times [s], ways [m] and speeds [m/s] of the knots of a line, from rest to rest."""
+    profile = Trapezoid(distance, speed, acceleration)
+    times = profile.knots(KNOT_STEP)
+    return (times, *profile.at(times))
 
 
 def _require_within_limits(arm: YumiArm, angles: FloatArray, margin: float, name: str) -> None:

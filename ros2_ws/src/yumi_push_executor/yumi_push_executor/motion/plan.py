@@ -1,6 +1,7 @@
 """From a push to a checked motion of one arm, or an error that says what is in the way."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -73,12 +74,12 @@ def plan_motion(
     candidates = ranked(solved, headings(push), postures, parameters)
     shift, touched = push.end - push.start, swept_blocks(push, arrangement, pusher)
 
-    def travel(arm: YumiArm) -> Travel:
-        scene = build_scene(arm.name, cell, arrangement, touched, shift, parameters.unknown_height)
-        return Travel(arm, Checker(scene, postures, width, parameters.margins), cell, parameters)
+    @cache  # an arm that no tried candidate needs costs nothing
+    def travel(arm: str) -> Travel:
+        scene = build_scene(arm, cell, arrangement, touched, shift, parameters.unknown_height)
+        return Travel(YumiArm(arm), Checker(scene, postures, width, parameters.margins), cell, parameters)
 
-    travels = {name: travel(YumiArm(name)) for name in {one.lines.arm.name for one in candidates}}
-    motion = _first_free(push, candidates, travels, postures, width, parameters, refusals)
+    motion = _first_free(push, candidates, travel, postures, width, parameters, refusals)
     if motion is None:
         raise _most_telling(refusals, len(candidates))
     return motion
@@ -140,20 +141,22 @@ def _solve_all(
 def _first_free(
     push: Push,
     candidates: list[Candidate],
-    travels: Mapping[str, Travel],
+    travel: Callable[[str], Travel],
     postures: Mapping[str, FloatArray],
     width: float,
     parameters: MotionParameters,
     refusals: list[SingulationError],
 ) -> Motion | None:
     """The first candidate that is clear all the way; the others' refusals are appended."""
+    used: dict[str, Travel] = {}
     for tried, candidate in enumerate(candidates[:_MOST_TRIED], start=1):
-        if sum(one.checked for one in travels.values()) > _MOST_CHECKED:
+        if sum(one.checked for one in used.values()) > _MOST_CHECKED:
             break
         lines = candidate.lines.turned(candidate.turn)
         name = lines.arm.name
+        used[name] = travel(name)
         try:
-            segments = complete(lines, travels[name], postures[name], width, parameters)
+            segments = complete(lines, used[name], postures[name], width, parameters)
         except SingulationError as refusal:
             refusals.append(refusal)
             continue

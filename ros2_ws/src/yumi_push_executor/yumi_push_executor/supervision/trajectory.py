@@ -1,6 +1,7 @@
 """Joint trajectories of one arm as a JointTrajectoryController takes and interpolates them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,7 +32,6 @@ class Trajectory:
     positions: FloatArray
     velocities: FloatArray | None = None
     accelerations: FloatArray | None = None
-    _coefficients: FloatArray = field(init=False, repr=False)  # (n - 1, 6, 7), lowest power first
 
     def __post_init__(self) -> None:
         times = np.array(self.times, dtype=np.float64).reshape(-1)
@@ -45,7 +45,6 @@ class Trajectory:
                 object.__setattr__(self, name, _joint_rows(value, len(times), name))
         if self.accelerations is not None and self.velocities is None:
             raise InvalidInputError("trajectory: accelerations without velocities")
-        object.__setattr__(self, "_coefficients", self._splines())
 
     @property
     def duration(self) -> float:
@@ -80,7 +79,9 @@ class Trajectory:
         velocities[resting] = 0.0
         return positions, velocities
 
-    def _splines(self) -> FloatArray:
+    @cached_property
+    def _coefficients(self) -> FloatArray:
+        """(n - 1, 6, 7), lowest power first."""
         h = np.diff(self.times)[:, None]
         p0, p1 = self.positions[:-1], self.positions[1:]
         c = np.zeros((len(h), 6, JOINTS))

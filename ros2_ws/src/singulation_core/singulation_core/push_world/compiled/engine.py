@@ -1,5 +1,6 @@
 """From arrangements and pushes to arrays and back."""
 
+import copy
 import math
 from collections.abc import Sequence
 
@@ -8,11 +9,14 @@ import numpy as np
 from singulation_core.arrangement import Arrangement
 from singulation_core.errors import InvalidInputError
 from singulation_core.polygon import FloatArray
-from singulation_core.push_world.compiled.rollout import DONE, measure_overlaps, roll_out_many
+from singulation_core.push_world.compiled.rollout import DONE, measure_overlaps, part_overlaps, roll_out_many
 from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State
 from singulation_core.push_world.footprint import Footprint
 from singulation_core.push_world.overlap import refuse_deep_overlap
 from singulation_core.push_world.physics import HEALED, TOUCHING, PushPhysics
+
+_SWEEPS = 20  # over all pairs, in which overlaps of a varied world are undone
+_RETREAT = 1.0  # inner units
 
 
 class CompiledWorld:
@@ -36,10 +40,11 @@ class CompiledWorld:
             )
         count = len(arrangement)
         self._unit = unit
-        self._origins = arrangement.centroids / unit
+        self._origins = np.column_stack((arrangement.centroids / unit, np.zeros(count)))
         self._shapes = _shapes(arrangement, footprint, physics.densities(count), unit)
         self._state, self._contacts = _state(self._shapes), _contacts(16 * count + 16)
         self._scratch = Scratch(np.zeros((2, count + 1), dtype=np.int64), np.zeros((2, 4)), np.zeros(2))
+        self._densities = physics.densities(count)
         self._numbers = Numbers(
             physics.friction,
             physics.overlap_correction,
@@ -49,6 +54,7 @@ class CompiledWorld:
             TOUCHING,
             physics.iterations,
             physics.settle_steps,
+            0.0,
         )
         measure_overlaps(self._shapes, self._state, self._origins)
         self._refuse_deep_overlaps(arrangement)
@@ -58,6 +64,31 @@ class CompiledWorld:
             radius = float(min(self._shapes.radii[one], self._shapes.radii[other]))
             ids = arrangement.objects[one].id, arrangement.objects[other].id
             refuse_deep_overlap(*ids, float(self._state.slack[one, other]), radius)
+
+    @property
+    def poses(self) -> FloatArray:
+        """(n, 3) x, y [m], turn [rad] of the blocks before a push."""
+        return self._origins * (self._unit, self._unit, 1.0)
+
+    def varied(self, shifts: FloatArray, turns: FloatArray, physics: PushPhysics) -> "CompiledWorld":
+        """A world in which the blocks lie, weigh and rub a little differently.
+
+        Blocks that overlap then are moved apart, and a pusher that would start on a block is moved back until it is
+        free. It shares its working memory with this world: never use both at the same time.
+
+        Args:
+            shifts, turns: (n, 2) [m], (n,) [rad] of the blocks.
+            physics: friction and densities; the rest stays.
+        """
+        made = copy.copy(self)
+        made._origins = self._origins + np.column_stack((shifts / self._unit, turns))
+        made._numbers = self._numbers._replace(friction=physics.friction, retreat=_RETREAT)
+        factors = np.append(np.array(self._densities) / physics.densities(len(shifts)), 0.0)
+        made._shapes = self._shapes._replace(mobility=self._shapes.mobility * factors[:, np.newaxis])
+        part_overlaps(made._shapes, self._state, made._origins, _SWEEPS)
+        made._state = self._state._replace(slack=np.zeros_like(self._state.slack))
+        measure_overlaps(made._shapes, made._state, made._origins)
+        return made
 
     def roll_out(self, starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, IntArray]:
         """Outcomes of pushes. Calls from several threads need a world each; the interpreter is free meanwhile.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled
+from singulation_core.jit import compiled_part
 from singulation_core.push_world.compiled.manifold import disc_contact, polygon_contacts, separation
 from singulation_core.push_world.compiled.solver import add_contact
 from singulation_core.push_world.compiled.types import Contacts, Scratch, Shapes, State
@@ -10,7 +10,7 @@ from singulation_core.push_world.compiled.types import Contacts, Scratch, Shapes
 _FOUND, _COMPLETE = 1, 2
 
 
-@compiled
+@compiled_part
 def pusher_gap(shapes: Shapes, state: State, body: int, enough: float) -> float:
     """Gap between the pusher and a block, or something larger than ``enough`` if it is."""
     n = len(shapes.radii) - 1
@@ -27,7 +27,7 @@ def pusher_gap(shapes: Shapes, state: State, body: int, enough: float) -> float:
     return gap
 
 
-@compiled
+@compiled_part
 def find_contacts(shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, margin: float) -> int:
     """Contacts of all blocks that the pusher touches, directly or through others; how many blocks these are."""
     n = len(shapes.radii) - 1
@@ -54,14 +54,14 @@ def find_contacts(shapes: Shapes, state: State, contacts: Contacts, scratch: Scr
     return found
 
 
-@compiled
+@compiled_part
 def _near(shapes: Shapes, state: State, one: int, other: int, margin: float) -> bool:
     reach = shapes.radii[one] + shapes.radii[other] + margin
     dx, dy = state.poses[one, 0] - state.poses[other, 0], state.poses[one, 1] - state.poses[other, 1]
     return bool(dx * dx + dy * dy <= reach * reach)
 
 
-@compiled
+@compiled_part
 def _pusher_contacts(
     shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, body: int, margin: float
 ) -> int:
@@ -85,7 +85,7 @@ def _pusher_contacts(
     return met
 
 
-@compiled
+@compiled_part
 def _pair_contacts(
     shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, one: int, other: int, margin: float
 ) -> int:

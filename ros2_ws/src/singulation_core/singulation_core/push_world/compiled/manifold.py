@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled
+from singulation_core.jit import compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.types import Shapes, State
 
 
-@compiled
+@compiled_part
 def place(shapes: Shapes, state: State, body: int) -> None:
     """Corners and normals of a shape at its pose."""
     x, y, angle = state.poses[body, 0], state.poses[body, 1], state.poses[body, 2]
@@ -19,7 +19,7 @@ def place(shapes: Shapes, state: State, body: int) -> None:
         state.outward[k, 0], state.outward[k, 1] = c * nx - s * ny, s * nx + c * ny
 
 
-@compiled
+@compiled_part
 def _edge_gap(shapes: Shapes, state: State, edge: int, other: int) -> float:
     """Gap between the line of an edge and another shape along the edge's normal."""
     nx, ny = state.outward[edge, 0], state.outward[edge, 1]
@@ -29,7 +29,7 @@ def _edge_gap(shapes: Shapes, state: State, edge: int, other: int) -> float:
     return float(least - nx * state.corners[edge, 0] - ny * state.corners[edge, 1])
 
 
-@compiled
+@compiled_part
 def separation(shapes: Shapes, state: State, one: int, other: int, enough: float) -> tuple[float, int]:
     """Largest gap over the edges of both, and that edge; stops as soon as a gap is larger than ``enough``."""
     best, best_edge = -np.inf, state.axes[one, other]
@@ -57,7 +57,7 @@ def separation(shapes: Shapes, state: State, one: int, other: int, enough: float
     return best, best_edge
 
 
-@compiled
+@compiled_part
 def touching_edge(shapes: Shapes, state: State, body: int, nx: float, ny: float) -> int:
     """Edge of a shape that faces against a direction most."""
     best, found = np.inf, shapes.firsts[body]
@@ -68,7 +68,7 @@ def touching_edge(shapes: Shapes, state: State, body: int, nx: float, ny: float)
     return int(found)
 
 
-@compiled
+@compiled_part
 def polygon_contacts(
     shapes: Shapes, state: State, one: int, other: int, margin: float, points: FloatArray
 ) -> tuple[int, int, float, float]:
@@ -108,12 +108,12 @@ def polygon_contacts(
     return count, swapped, nx, ny
 
 
-@compiled
+@compiled_part
 def _next(shapes: Shapes, body: int, vertex: int) -> int:
     return vertex + 1 if vertex + 1 < shapes.firsts[body + 1] else int(shapes.firsts[body])
 
 
-@compiled
+@compiled_part
 def _clip(
     state: State, here: int, there: int, tx: float, ty: float, low: float, high: float
 ) -> tuple[float, float, bool]:
@@ -128,7 +128,7 @@ def _clip(
     return x + share * dx, y + share * dy, 0.0 <= share <= 1.0
 
 
-@compiled
+@compiled_part
 def disc_contact(
     shapes: Shapes, state: State, body: int, x: float, y: float, radius: float
 ) -> tuple[float, float, float, float]:

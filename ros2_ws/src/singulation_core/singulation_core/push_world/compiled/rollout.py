@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled
+from singulation_core.jit import compiled, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.island import find_contacts, pusher_gap
 from singulation_core.push_world.compiled.manifold import place, separation
@@ -28,7 +28,7 @@ def roll_out_many(
 
     Args:
         shapes, state, contacts, scratch, numbers: see their classes.
-        origins: (n, 2) first positions of the blocks.
+        origins: (n, 3) first poses of the blocks.
         pushes: (m, 4) start x, y, heading, length.
         poses: (m, n, 3) written: x, y, turn.
         codes: (m,) written: ``DONE``, ``BLOCKED`` or ``DIVERGED``.
@@ -57,6 +57,37 @@ def measure_overlaps(shapes: Shapes, state: State, origins: FloatArray) -> None:
 
 
 @compiled
+def part_overlaps(shapes: Shapes, state: State, origins: FloatArray, sweeps: int) -> None:
+    """Move blocks in ``origins`` straight apart until none overlap, or ``sweeps`` times over all pairs."""
+    _begin(shapes, state, origins, 0.0, 0.0, 0.0)
+    for _ in range(sweeps):
+        parted = True
+        for one in range(len(origins)):
+            for other in range(one):
+                dx, dy = origins[other, 0] - origins[one, 0], origins[other, 1] - origins[one, 1]
+                if np.hypot(dx, dy) >= shapes.radii[one] + shapes.radii[other]:
+                    continue
+                gap, edge = separation(shapes, state, one, other, 0.0)
+                if gap >= -1e-6:
+                    continue
+                way = -0.5 * gap if shapes.firsts[one] <= edge < shapes.firsts[one + 1] else 0.5 * gap
+                x, y = way * state.outward[edge, 0], way * state.outward[edge, 1]
+                _shift(shapes, state, origins, other, x, y)
+                _shift(shapes, state, origins, one, -x, -y)
+                parted = False
+        if parted:
+            return
+
+
+@compiled_part
+def _shift(shapes: Shapes, state: State, origins: FloatArray, body: int, x: float, y: float) -> None:
+    for poses in (origins, state.poses):
+        poses[body, 0] += x
+        poses[body, 1] += y
+    place(shapes, state, body)
+
+
+@compiled_part
 def _begin(shapes: Shapes, state: State, origins: FloatArray, x: float, y: float, heading: float) -> None:
     """Everything at its first pose, in the frame of a push from (x, y) along ``heading``."""
     n = len(origins)
@@ -64,7 +95,7 @@ def _begin(shapes: Shapes, state: State, origins: FloatArray, x: float, y: float
     for body in range(n + 1):
         dx, dy, angle = 0.0, 0.0, 0.0
         if body < n:
-            dx, dy, angle = origins[body, 0] - x, origins[body, 1] - y, -heading
+            dx, dy, angle = origins[body, 0] - x, origins[body, 1] - y, origins[body, 2] - heading
         state.poses[body, 0], state.poses[body, 1], state.poses[body, 2] = c * dx + s * dy, c * dy - s * dx, angle
         place(shapes, state, body)
         for other in range(n + 1):
@@ -73,15 +104,19 @@ def _begin(shapes: Shapes, state: State, origins: FloatArray, x: float, y: float
                 state.memory[body, other, slot, 0] = -1.0
 
 
-@compiled
+@compiled_part
 def _roll_out(
     shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, numbers: Numbers, length: float
 ) -> int:
     """One push, after ``_begin``; the poses are left in ``state``."""
     n = len(shapes.radii) - 1
-    if _nearest(shapes, state) < -numbers.touching:
-        return BLOCKED
     left, found = length, 0
+    while _nearest(shapes, state) < -numbers.touching:
+        if left - length >= numbers.retreat:
+            return BLOCKED
+        state.poses[n, 0] -= 0.5 * numbers.step
+        left += 0.5 * numbers.step
+        place(shapes, state, n)
     while left > 1e-12:
         gap = _nearest(shapes, state) if found == 0 else 0.0
         if gap > 1.5 * numbers.step:  # nothing to push yet: jump
@@ -101,7 +136,7 @@ def _roll_out(
     return DONE
 
 
-@compiled
+@compiled_part
 def _nearest(shapes: Shapes, state: State) -> float:
     """Gap between the pusher and the nearest block."""
     gap = np.inf
@@ -110,7 +145,7 @@ def _nearest(shapes: Shapes, state: State) -> float:
     return gap
 
 
-@compiled
+@compiled_part
 def _step(shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, numbers: Numbers, advance: float) -> int:
     """Move the pusher by ``advance`` and the blocks with it; how many blocks are in contact."""
     n = len(shapes.radii) - 1
@@ -130,7 +165,7 @@ def _step(shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, nu
     return found
 
 
-@compiled
+@compiled_part
 def _move(shapes: Shapes, state: State, body: int) -> None:
     x, y, turn = state.motion[body, 0], state.motion[body, 1], state.motion[body, 2]
     if x != 0.0 or y != 0.0 or turn != 0.0:

@@ -1,13 +1,13 @@
 """Motion of the blocks in one step: least kinetic energy under contacts with friction (projected Gauss-Seidel)."""
 
-from singulation_core.jit import compiled
+from singulation_core.jit import compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.types import Contacts, Numbers, Shapes, State
 
-_STILL = 1e-6  # inner units; the solver stops when no contact corrects more
+_STILL = 1e-4  # inner units; the solver stops when no contact corrects more
 
 
-@compiled
+@compiled_part
 def add_contact(
     shapes: Shapes,
     state: State,
@@ -39,7 +39,7 @@ def add_contact(
     contacts.impulse[c, 0], contacts.impulse[c, 1] = 0.0, 0.0
 
 
-@compiled
+@compiled_part
 def _push_apart(shapes: Shapes, state: State, contacts: Contacts, c: int, along: float, aside: float) -> None:
     """Apply an impulse along the normal and along the tangent (normal turned left) of a contact."""
     first, second = contacts.bodies[c, 0], contacts.bodies[c, 1]
@@ -55,7 +55,7 @@ def _push_apart(shapes: Shapes, state: State, contacts: Contacts, c: int, along:
     motion[second, 2] += mobility[second, 1] * (bx * jy - by * jx)
 
 
-@compiled
+@compiled_part
 def _slip(state: State, contacts: Contacts, c: int) -> tuple[float, float]:
     """Relative motion of the two bodies at a contact: apart, and along the tangent."""
     first, second = contacts.bodies[c, 0], contacts.bodies[c, 1]
@@ -66,7 +66,7 @@ def _slip(state: State, contacts: Contacts, c: int) -> tuple[float, float]:
     return ux * nx + uy * ny, uy * nx - ux * ny
 
 
-@compiled
+@compiled_part
 def warm_start(shapes: Shapes, state: State, contacts: Contacts) -> None:
     """Begin with the impulses that the same contacts had in the last step."""
     for c in range(contacts.total[0]):
@@ -79,7 +79,7 @@ def warm_start(shapes: Shapes, state: State, contacts: Contacts) -> None:
                 break
 
 
-@compiled
+@compiled_part
 def remember(state: State, contacts: Contacts) -> None:
     """Keep the impulses for the next step."""
     for c in range(contacts.total[0]):
@@ -91,7 +91,7 @@ def remember(state: State, contacts: Contacts) -> None:
             state.memory[first, second, 1, 0] = -1.0
 
 
-@compiled
+@compiled_part
 def solve(shapes: Shapes, state: State, contacts: Contacts, numbers: Numbers, healing: float) -> None:
     """Find the motion of all blocks in contact.
 

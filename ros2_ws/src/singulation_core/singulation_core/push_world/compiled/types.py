@@ -45,6 +45,7 @@ class Numbers(NamedTuple):
     touching: float  # overlap of pusher and block at the start that is not yet an overlap
     iterations: int
     settle_steps: int
+    retreat: float  # how far a pusher that would start on a block is moved back
 
 
 class Scratch(NamedTuple):

@@ -1,0 +1,54 @@
+"""What is compared: policies with their options."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+_NO_LIMIT = 10**9
+
+
+@dataclass(frozen=True, slots=True)
+class Planner:
+    """A policy with options.
+
+    Args:
+        name: under which its pushes are stored.
+        text: in tables.
+        policy: of ``plan_push``.
+        options: keyword arguments of ``plan_push``.
+        largest: number of blocks beyond which it is not asked.
+    """
+
+    name: str
+    text: str
+    policy: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    largest: int = 15
+
+
+def _rollout(milliseconds: float, **options: Any) -> Planner:
+    name = "_".join([f"rollout_{milliseconds:g}ms", *(f"{key}{value}" for key, value in options.items())])
+    text = f"Rollout Push, {milliseconds:g} ms" if milliseconds else "Rollout Push, score alone"
+    text += "".join(f", {key} {value}" for key, value in options.items())
+    given = {"budget": milliseconds, "rollouts": _NO_LIMIT, **options}
+    return Planner(name, text, "rollout_push", given)
+
+
+BRUTE_FORCE = Planner("brute_force", "Brute Force", "brute_force")
+BUDGETS: Sequence[float] = (0.0, 0.1, 0.3, 1.0, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0)
+NOMINAL: Sequence[Planner] = (
+    Planner("cluster_push", "ClusterPush", "cluster_push"),
+    Planner("min_overlap", "Minimum Overlap", "min_overlap"),
+    BRUTE_FORCE,
+    *(_rollout(budget) for budget in BUDGETS),
+)
+LONG: Sequence[Planner] = (_rollout(1000.0), _rollout(10000.0))
+MODES: Sequence[Planner] = (BRUTE_FORCE, _rollout(10.0), _rollout(30.0, best_contact_mode=True))
+ROBUST: Sequence[Planner] = (
+    Planner("cluster_push", "ClusterPush", "cluster_push"),
+    BRUTE_FORCE,
+    _rollout(0.0),
+    _rollout(10.0),
+    _rollout(26.0, worlds=16),
+    _rollout(100.0, worlds=64),
+)

@@ -1,0 +1,28 @@
+"""How the functions of this package are compiled.
+
+The first start compiles all of it, and Numba's time goes with the length of the code. So entries for C callers are left
+out everywhere, and entries for Python and a cache of their own where only compiled code calls. Three habits help as
+much: ``math.sqrt`` instead of ``np.sqrt``, ``x * x`` instead of ``x ** 2``, and indices instead of views of rows.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from numba import njit
+
+_USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """Compile a function that Python calls; kept on disk."""
+    return njit(**_USUAL, cache=True)(function)
+
+
+def compiled_sums(function: Callable[..., Any]) -> Any:
+    """As ``compiled``, where sums may be added up in any order: that makes vector instructions of them."""
+    return njit(**_USUAL, cache=True, fastmath={"reassoc", "contract"})(function)
+
+
+def compiled_part(function: Callable[..., Any]) -> Any:
+    """Compile a function that only compiled functions call; kept on disk as part of them."""
+    return njit(**_USUAL, no_cpython_wrapper=True)(function)

@@ -1,0 +1,108 @@
+"""How a block goes when the tip of a jaw pushes it and nothing else is in its way."""
+
+import numpy as np
+from numba import njit
+
+from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.types import IntArray
+
+
+@njit(cache=True)
+def _squared_gyration(vertices: FloatArray, first: int, last: int, x: float, y: float) -> float:
+    """Moment of inertia over mass about (x, y) [m^2]."""
+    area, moment = 0.0, 0.0
+    for k in range(first, last):
+        after = k + 1 if k + 1 < last else first
+        ax, ay = vertices[k, 0] - x, vertices[k, 1] - y
+        bx, by = vertices[after, 0] - x, vertices[after, 1] - y
+        weight = ax * by - bx * ay
+        area += weight
+        moment += weight * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by)
+    return moment / (6.0 * area)
+
+
+@njit(cache=True)
+def _nearest(
+    vertices: FloatArray, first: int, last: int, x: float, y: float, tip_x: float, tip_y: float
+) -> tuple[float, float, float, float, float]:
+    """Nearest point of an outline to the tip, relative to (x, y), the normal there, and the distance (inside: < 0)."""
+    height, edge, length = -np.inf, first, 1.0
+    for k in range(first, last):
+        after = k + 1 if k + 1 < last else first
+        ex, ey = vertices[after, 0] - vertices[k, 0], vertices[after, 1] - vertices[k, 1]
+        size = np.sqrt(ex * ex + ey * ey)
+        above = ((tip_x + x - vertices[k, 0]) * ey - (tip_y + y - vertices[k, 1]) * ex) / size
+        if above > height:
+            height, edge, length = above, k, size
+    after = edge + 1 if edge + 1 < last else first
+    vx, vy = vertices[edge, 0] - x, vertices[edge, 1] - y
+    ex, ey = vertices[after, 0] - vertices[edge, 0], vertices[after, 1] - vertices[edge, 1]
+    share = min(1.0, max(0.0, ((tip_x - vx) * ex + (tip_y - vy) * ey) / (length * length)))
+    px, py = vx + share * ex, vy + share * ey
+    nx, ny = tip_x - px, tip_y - py
+    distance = np.sqrt(nx * nx + ny * ny)
+    if height <= 0.0 or distance < 1e-9 * length:
+        return px, py, ey / length, -ex / length, height
+    return px, py, nx / distance, ny / distance, distance
+
+
+@njit(cache=True)
+def _force(
+    nx: float, ny: float, rx: float, ry: float, dx: float, dy: float, gyration: float, friction: float
+) -> tuple[float, float, float]:
+    """Direction of the force that moves the point at (rx, ry) along (dx, dy), within the cone of friction around
+    -(nx, ny), and the turn it causes; the block is as heavy as its limit surface is wide: 1.
+    """
+    lever = (rx * dy - ry * dx) / (gyration + rx * rx + ry * ry)
+    fx, fy = dx + ry * lever, dy - rx * lever
+    pressed, aside = -(fx * nx + fy * ny), fy * nx - fx * ny
+    if abs(aside) > friction * pressed:
+        side = friction if aside > 0.0 else -friction
+        fx, fy = -nx - side * ny, -ny + side * nx
+    return fx, fy, (rx * fy - ry * fx) / gyration
+
+
+@njit(cache=True)
+def paths_alone(
+    centroids: FloatArray,
+    vertices: FloatArray,
+    firsts: IntArray,
+    targets: IntArray,
+    starts: FloatArray,
+    directions: FloatArray,
+    tip: float,
+    travel: float,
+    friction: float,
+    paths: FloatArray,
+) -> None:
+    """Quasi-static paths of the targets of m pushes (ellipsoidal limit surface, as in the push physics).
+
+    Args:
+        centroids, vertices, firsts: as in ``Scene``.
+        targets, starts, directions: (m,), (m, 2), (m, 2) pushes.
+        tip, travel, friction: radius [m], way [m] and friction of the tip.
+        paths: (m, k, 2), written: displacement of the centroid [m] after each kth of the way.
+    """
+    count = len(firsts) - 1
+    gyrations = np.empty(count)
+    for i in range(count):
+        x, y = centroids[i, 0], centroids[i, 1]
+        gyrations[i] = _squared_gyration(vertices, firsts[i], firsts[i + 1], x, y)
+    steps = paths.shape[1]
+    for c in range(len(targets)):
+        i, dx, dy, advance = targets[c], directions[c, 0], directions[c, 1], travel / steps
+        cx, cy = centroids[i, 0], centroids[i, 1]
+        tip_x, tip_y, x, y, turn = starts[c, 0] - cx, starts[c, 1] - cy, 0.0, 0.0, 0.0
+        for step in range(steps):
+            c_, s_ = np.cos(turn), np.sin(turn)
+            ux, uy = c_ * (tip_x - x) + s_ * (tip_y - y), c_ * (tip_y - y) - s_ * (tip_x - x)
+            px, py, qx, qy, distance = _nearest(vertices, firsts[i], firsts[i + 1], cx, cy, ux, uy)
+            nx, ny, rx, ry = c_ * qx - s_ * qy, s_ * qx + c_ * qy, c_ * px - s_ * py, s_ * px + c_ * py
+            need = -advance * (nx * dx + ny * dy) - (distance - tip)
+            tip_x, tip_y = tip_x + advance * dx, tip_y + advance * dy
+            if nx * dx + ny * dy < 0.0 and need > 0.0:
+                fx, fy, spin = _force(nx, ny, rx, ry, dx, dy, gyrations[i], friction)
+                yields = -((fx - spin * ry) * nx + (fy + spin * rx) * ny)
+                if yields > 1e-6:
+                    x, y, turn = x + need / yields * fx, y + need / yields * fy, turn + need / yields * spin
+            paths[c, step, 0], paths[c, step, 1] = x, y
