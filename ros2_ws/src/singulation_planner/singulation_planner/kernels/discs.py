@@ -5,15 +5,15 @@ is what makes discs good enough in touching clutter.
 """
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
 _FLOOR = 0.05  # smallest distance that counts, in units of the scale, as in the singulation distance
 
 
-@njit(cache=True)
+@compiled_part
 def _spread(
     points: FloatArray, contact: FloatArray, target: int, queue: IntArray, rank: IntArray, moved: FloatArray
 ) -> None:
@@ -42,7 +42,7 @@ def _spread(
                 tail += 1
 
 
-@njit(cache=True)
+@compiled_part
 def _log_gain(before: FloatArray, after: FloatArray, moved: FloatArray, floor: float) -> float:
     """Change of the mean log distance of all pairs."""
     n = len(before)
@@ -61,7 +61,7 @@ def _log_gain(before: FloatArray, after: FloatArray, moved: FloatArray, floor: f
     return float(total / (0.5 * n * (n - 1)))
 
 
-@njit(cache=True)
+@compiled_part
 def _clearance(before: FloatArray, after: FloatArray, gaps: FloatArray, moved: FloatArray, width: float) -> float:
     """Mean over the blocks of the gap to the nearest other one, at most ``width``, in units of it."""
     n = len(before)
@@ -81,7 +81,7 @@ def _clearance(before: FloatArray, after: FloatArray, gaps: FloatArray, moved: F
     return total / n
 
 
-@njit(cache=True)
+@compiled_maker
 def disc_scores(
     centroids: FloatArray,
     gaps: FloatArray,
