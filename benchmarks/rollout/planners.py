@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from singulation_core.push_world import PushPhysics
+
 _NO_LIMIT = 10**9
 
 
@@ -35,6 +37,9 @@ def _rollout(milliseconds: float, **options: Any) -> Planner:
 
 
 BRUTE_FORCE = Planner("brute_force", "Brute Force", "brute_force")
+FAST_BRUTE_FORCE = Planner(
+    "brute_force_compiled", "Brute Force in the compiled simulator", "brute_force", {"physics": PushPhysics.fast()}
+)
 BUDGETS: Sequence[float] = (0.0, 0.1, 0.3, 1.0, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0)
 NOMINAL: Sequence[Planner] = (
     Planner("cluster_push", "ClusterPush", "cluster_push"),

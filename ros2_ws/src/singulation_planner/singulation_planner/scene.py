@@ -82,6 +82,14 @@ class Scene:
         numbered[list(self.order)] = poses
         return displaced(self.arrangement, numbered)
 
+    def after(self, poses: FloatArray) -> "Scene":
+        """The scene with the objects at ``poses`` (n, 3) in canonical order.
+
+        Raises:
+            SingulationError: as ``of``.
+        """
+        return Scene.of(self.displaced(poses))
+
     def object_id(self, index: int) -> int:
         """Id of the object at this place of the canonical order."""
         return self.arrangement.objects[self.order[index]].id
