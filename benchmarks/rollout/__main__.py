@@ -1,22 +1,23 @@
 """Rollout Push against Brute Force: gain against time, with noise, choosing the contact mode, pushes to separation.
 
-scripts/bench rollout [--seeds 10] [--noise-seeds 1] [--separation 50] [--only PART ...] [--out DIR]
+scripts/bench rollout [--seeds 10] [--noise-seeds 1] [--separation 50] [--fast] [--only PART ...] [--out DIR]
 
 A run that was stopped goes on where it was. Processor time of one core. Brute Force takes most of it.
 """
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from benchmarks.rollout.judges import JUDGES
-from benchmarks.rollout.planners import MODES, NOMINAL, ROBUST
+from benchmarks.rollout.planners import BRUTE_FORCE, FAST_BRUTE_FORCE, MODES, NOMINAL, ROBUST, Planner
 from benchmarks.rollout.plans import Store, recipes
 from benchmarks.rollout.report import frontier, share_table
 from benchmarks.rollout.separation import LIMITS, WAYS, separation_report
 
 from singulation_planner import warm_up
+from singulation_planner.benchmark.evaluate import SceneRecipe
 
 _CLEAN = {"pymunk": "fine pymunk", "box2d": "Box2D"}
 
@@ -24,28 +25,43 @@ _CLEAN = {"pymunk": "fine pymunk", "box2d": "Box2D"}
 def nominal(options: argparse.Namespace) -> str:
     """Gain against time."""
     store, scenes = Store(options.out), recipes(options.seeds)
-    store.complete(scenes, NOMINAL, {name: JUDGES[name] for name in _CLEAN})
-    frontier(store, scenes, NOMINAL, "pymunk", options.out / "rollout_frontier.png")
-    return share_table(store, scenes, NOMINAL, _CLEAN) + "\n![Gain against time](rollout_frontier.png)\n"
+    _complete(options, store, scenes, NOMINAL, _CLEAN)
+    frontier(store, scenes, NOMINAL, options.out / "rollout_frontier.png", options.reference)
+    table = share_table(store, scenes, NOMINAL, _CLEAN, options.reference)
+    return table + "\n![Gain against time](rollout_frontier.png)\n"
 
 
 def noise(options: argparse.Namespace) -> str:
     """With noise of perception and friction."""
     store, scenes = Store(options.out), recipes(options.noise_seeds)
-    store.complete(scenes, ROBUST, {"noise": JUDGES["noise"]})
-    return share_table(store, scenes, ROBUST, {"noise": "12 worlds with noise"})
+    columns = {"noise": "12 worlds with noise"}
+    _complete(options, store, scenes, ROBUST, columns)
+    return share_table(store, scenes, ROBUST, columns, options.reference)
 
 
 def modes(options: argparse.Namespace) -> str:
     """Choosing the contact mode too."""
     store, scenes = Store(options.out), recipes(options.noise_seeds)
-    store.complete(scenes, MODES, {name: JUDGES[name] for name in _CLEAN})
-    return share_table(store, scenes, MODES, _CLEAN)
+    _complete(options, store, scenes, MODES, _CLEAN)
+    return share_table(store, scenes, MODES, _CLEAN, options.reference)
 
 
 def separation(options: argparse.Namespace) -> str:
     """Pushes until every gap is wider than 0.4 bounding radii."""
     return separation_report(options.out, options.separation, list(LIMITS), WAYS)
+
+
+def _complete(
+    options: argparse.Namespace,
+    store: Store,
+    scenes: Sequence[SceneRecipe],
+    planners: Sequence[Planner],
+    judges: Mapping[str, str],
+) -> None:
+    if options.tables_only:
+        return
+    wanted = [one for one in planners if one.policy != "brute_force"]
+    store.complete(scenes, [*wanted, options.reference], {name: JUDGES[name] for name in judges})
 
 
 PARTS: dict[str, tuple[str, Callable[[argparse.Namespace], str]]] = {
@@ -80,7 +96,11 @@ def _options() -> argparse.Namespace:
     add("--separation", type=int, default=50, help="scenes for each number of blocks (default: %(default)s)")
     add("--only", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART", help=", ".join(PARTS))
     add("--out", type=Path, default=Path("bench_results/rollout"))
-    return parser.parse_args()
+    add("--fast", action="store_true", help="compare with Brute Force in the compiled simulator, a tenth of the work")
+    add("--tables-only", action="store_true", help="plan nothing, make the tables of what is there")
+    options = parser.parse_args()
+    options.reference = FAST_BRUTE_FORCE if options.fast else BRUTE_FORCE
+    return options
 
 
 if __name__ == "__main__":
