@@ -1,6 +1,6 @@
 """Plans random pushes over the lab's workspace, audits every motion, and draws the three kinds.
 
-scripts/bench executor [--pushes 1000] [--seed 0] [--out DIR] [--no-animations] [--no-audit]
+scripts/bench executor [--pushes 1000] [--seed 0] [--out DIR] [--no-pictures | --no-animations] [--no-audit]
 """
 
 import argparse
@@ -19,6 +19,7 @@ def main() -> None:
     parser.add_argument("--pushes", type=int, default=1000, help="with blocks, and as many without")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("bench_results/executor"))
+    parser.add_argument("--no-pictures", action="store_true")
     parser.add_argument("--no-animations", action="store_true", help="pictures only")
     parser.add_argument("--no-audit", action="store_true", help="only plan and measure time")
     options = parser.parse_args()
@@ -31,9 +32,9 @@ def main() -> None:
     write_report(options.out / "executor.md", reach, sets)
     for name, trials in sets.items():
         write_trials(options.out / f"pushes_{name.replace(' ', '_')}.csv", trials)
-    pictures = save_pictures(options.out, not options.no_animations)
     print((options.out / "executor.md").read_text())
-    print("pictures:", *pictures)
+    if not options.no_pictures:
+        print("pictures:", *save_pictures(options.out, not options.no_animations))
 
 
 if __name__ == "__main__":

@@ -146,20 +146,18 @@ def _distances(
 ) -> None:
     """Smallest distance of every kind of pair; what may be touched in this phase is left out."""
     model, work = robot(), robot().createData()
-    postures = dict(CLEAR_VIEW)
+    postures, smallest = dict(CLEAR_VIEW), np.full(len(scene.pairs), np.inf)
     for row in positions:
         postures[motion.arm] = row
-        q = configuration(postures, {motion.arm: motion.opening})
-        pin.computeDistances(model, work, scene.geometry, data, q)
-        for pair, result in zip(scene.pairs, data.distanceResults, strict=True):
-            if _may_touch(pair.kind, phase, pair.block in scene.touched):
-                continue
-            margin = _margin(pair.kind, phase, p.margins)
-            distance = result.min_distance
-            name = f"{pair.kind.value}, {'on the lines' if phase in _LINES else 'travelling'}"
-            figures.clearance[name] = min(figures.clearance.get(name, np.inf), distance)
-            if not (distance >= max(margin - _BETWEEN, 0.0)):
-                figures.violations.append(f"{phase.name}: {pair.kind.value} {distance * 1e3:.2f} mm")
+        pin.computeDistances(model, work, scene.geometry, data, configuration(postures, {motion.arm: motion.opening}))
+        smallest = np.minimum(smallest, [result.min_distance for result in data.distanceResults])
+    for pair, distance in zip(scene.pairs, smallest.tolist(), strict=True):
+        if _may_touch(pair.kind, phase, pair.block in scene.touched):
+            continue
+        name = f"{pair.kind.value}, {'on the lines' if phase in _LINES else 'travelling'}"
+        figures.clearance[name] = min(figures.clearance.get(name, np.inf), distance)
+        if not (distance >= max(_margin(pair.kind, phase, p.margins) - _BETWEEN, 0.0)):
+            figures.violations.append(f"{phase.name}: {pair.kind.value} {distance * 1e3:.2f} mm")
 
 
 def _margin(kind: Kind, phase: Phase, margins: Margins) -> float:

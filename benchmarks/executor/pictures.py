@@ -1,20 +1,22 @@
-"""One push of each contact mode as a picture and as an animation."""
+"""One push of each contact mode as a picture and as an animation, from the joint states of its execution."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from benchmarks.executor.drawing import Moment, save_animation, save_strip
+from benchmarks.supervision.robot import BenchRobot
 
-from singulation_core import Arrangement, CellGeometry, ContactMode, PlanarObject, Push, PusherGeometry
+from singulation_core import Arrangement, CellGeometry, ContactMode, PlanarObject, Push, PusherGeometry, ResultCode
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world import simulate_push
-from yumi_push_executor import Motion, YumiArm, plan_motion
-from yumi_push_executor.kinematics import CLEAR_VIEW
-from yumi_push_executor.kinematics.model import ARMS
+from singulation_sim.driver import PERIOD
+from yumi_push_executor import YumiArm
 from yumi_push_executor.motion.jaws import middle_line
-from yumi_push_executor.supervision.segment import Phase
+from yumi_push_executor.supervision import Phase, Step, Supervisor
 
 _RATE = 8  # frames per second
+_SPEED = 2.0  # times the real one
 
 
 def example(mode: ContactMode) -> tuple[Push, Arrangement]:
@@ -36,45 +38,57 @@ def save_pictures(folder: Path, animations: bool) -> list[Path]:
     written: list[Path] = []
     for mode in ContactMode:
         push, blocks = example(mode)
-        motion = plan_motion(push, blocks)
-        picture = folder / f"motion_{mode.label}.png"
-        save_strip(picture, [_moment(motion, blocks, phase, 1.0) for phase in _PHASES], push)
+        states = executed(push, blocks)
+        parts = [[one for one in states if one.phase is phase] for phase in _PHASES]
+        picture = folder / f"executor_{mode.label}.png"
+        save_strip(picture, [_moment(part[-1], push, blocks) for part in parts], push)
         written.append(picture)
         if animations:
-            written.append(folder / f"motion_{mode.label}.gif")
-            save_animation(written[-1], _all_moments(motion, blocks), _RATE)
+            written.append(picture.with_suffix(".gif"))
+            moments = [_moment(one, push, blocks) for one in states[:: round(_SPEED / _RATE / PERIOD)]]
+            save_animation(written[-1], moments, _RATE)
     return written
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _State:
+    """Measured joint states during a push: (7,) angles per arm [rad], jaw openings [m]."""
+
+    phase: Phase
+    arm: str
+    postures: dict[str, FloatArray]
+    openings: dict[str, float]
+
+
+def executed(push: Push, blocks: Arrangement) -> list[_State]:
+    """The joint states that the simulated driver reports while the push is executed under supervision, at 250 Hz."""
+    robot, states = BenchRobot(), list[_State]()
+    segments = robot.planner.plan(push, blocks, robot.sample)
+    arm = segments[0].arm
+
+    def record(step: Step, _: Supervisor) -> None:
+        states.append(_State(step.phase, arm, robot.sample.positions, robot.sample.openings))
+
+    outcome = robot.run(segments, record)
+    if outcome.code is not ResultCode.OK:
+        raise RuntimeError(f"{push.contact_mode.label} push ended with {outcome.code.name}: {outcome.text}")
+    return states
 
 
 _PHASES = (Phase.GRIPPER, Phase.APPROACH, Phase.DESCEND, Phase.PUSH, Phase.RETREAT, Phase.CLEAR_VIEW)
 
 
-def _all_moments(motion: Motion, blocks: Arrangement) -> list[Moment]:
-    """Twice the real speed."""
-    moments = []
-    for phase in _PHASES[1:]:
-        trajectory = motion.segment(phase).trajectory
-        frames = max(2, round(0.5 * _RATE * (trajectory.duration if trajectory else 0.0)))
-        moments += [_moment(motion, blocks, phase, share) for share in np.linspace(0.0, 1.0, frames)]
-    return moments
+def _moment(state: _State, push: Push, blocks: Arrangement) -> Moment:
+    """What is seen in a state; the blocks move as the push physics says."""
+    title = state.phase.name.lower().replace("_", " ")
+    return Moment(title, state.arm, state.postures, state.openings, _blocks(state, push, blocks))
 
 
-def _moment(motion: Motion, blocks: Arrangement, phase: Phase, share: float) -> Moment:
-    """What is seen after a share of a phase; the blocks move as the push physics says."""
-    trajectory = motion.segment(phase).trajectory
-    q = motion.start if trajectory is None else trajectory.sample(share * trajectory.duration)[0][0]
-    other = next(name for name in ARMS if name != motion.arm)
-    postures = {motion.arm: q, other: CLEAR_VIEW[other]}
-    title = phase.name.lower().replace("_", " ")
-    return Moment(title, motion.arm, postures, {motion.arm: motion.opening}, _blocks(motion, blocks, phase, q))
-
-
-def _blocks(motion: Motion, blocks: Arrangement, phase: Phase, q: FloatArray) -> Arrangement:
-    if phase < Phase.PUSH:
+def _blocks(state: _State, push: Push, blocks: Arrangement) -> Arrangement:
+    if state.phase < Phase.PUSH:
         return blocks
-    push = motion.push
-    if phase is Phase.PUSH:
-        tip = _tip_in_table(motion.arm, q)
+    if state.phase is Phase.PUSH:
+        tip = _tip_in_table(state.arm, state.postures[state.arm])
         gone = float((tip - middle_line(push, PusherGeometry()).start) @ push.direction)
         if not (gone > 1e-4):
             return blocks

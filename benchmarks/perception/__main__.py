@@ -2,10 +2,10 @@
 
 scripts/bench perception [--only PART ...] [--clouds FILE ...] [--out FOLDER] [--without-pcl]
 
-Parts: speed, clusters, separate, touching, gaps, startup, pictures. Each takes one to eight minutes on one core and
-replaces only its own tables, so that they may be run one after the other. PCL (C++) is compiled here from sources in
-benchmarks/perception/pcl; it needs g++, pkg-config and libpcl-dev. Run on an idle machine: processor time is counted,
-but a busy neighbour still takes cache and memory bandwidth.
+Parts: speed, clusters, separate, touching, gaps, startup, replay, pictures. Each takes one to eight minutes on one
+core and replaces only its own tables, so that they may be run one after the other. PCL (C++) is compiled here from
+sources in benchmarks/perception/pcl; it needs g++, pkg-config and libpcl-dev. Run on an idle machine: processor time is
+counted, but a busy neighbour still takes cache and memory bandwidth.
 """
 
 import argparse
@@ -21,6 +21,7 @@ from benchmarks.perception.clustering import run_clusters
 from benchmarks.perception.pcl_rival import PclRival
 from benchmarks.perception.pictures import draw_recorded, draw_synthetic
 from benchmarks.perception.quality import gap_settings, run_quality, separate_settings, touching_settings
+from benchmarks.perception.replay_memory import run_replay_memory
 from benchmarks.perception.speed import run_speed
 from benchmarks.perception.startup import run_startup
 from benchmarks.perception.tables import Table
@@ -63,6 +64,11 @@ def startup(options: argparse.Namespace, _: PclRival | None) -> Sequence[Table]:
     return run_startup(options.rounds)
 
 
+def replay(options: argparse.Namespace, _: PclRival | None) -> Sequence[Table]:
+    """Memory of replay_clouds."""
+    return run_replay_memory(options.gigabytes)
+
+
 def pictures(options: argparse.Namespace, _: PclRival | None) -> Sequence[Table]:
     """PNG files beside the tables."""
     paths = [*draw_synthetic(options.out), *draw_recorded(options.clouds, options.out)]
@@ -70,7 +76,9 @@ def pictures(options: argparse.Namespace, _: PclRival | None) -> Sequence[Table]
     return []
 
 
-PARTS: dict[str, Part] = {one.__name__: one for one in (speed, clusters, separate, touching, gaps, startup, pictures)}
+PARTS: dict[str, Part] = {
+    one.__name__: one for one in (speed, clusters, separate, touching, gaps, startup, replay, pictures)
+}
 
 
 def main() -> int:
@@ -111,6 +119,7 @@ def _options() -> argparse.Namespace:
     add("--scenes", type=int, default=0, help="scenes of each kind (default: what suits the part)")
     add("--rounds", type=int, default=5, help="of each measurement of time (default %(default)s)")
     add("--clouds", nargs="+", type=Path, default=[], metavar="FILE", help="recorded clouds (PCD, PLY) to look at too")
+    add("--gigabytes", type=int, default=4, help="largest bag of the part replay (default %(default)s)")
     add("--without-pcl", action="store_true", help="no rival in C++, on machines without libpcl-dev")
     add("--out", type=Path, default=Path("bench_results/perception"), help="folder (default %(default)s)")
     return parser.parse_args()

@@ -1,7 +1,6 @@
 """Euclidean clustering alone: the same points for everybody, partitions compared member by member."""
 
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from singulation_perception.decoding import decode_points
 
 TOLERANCES = (0.002, 0.003, 0.005)
 _CAMERA_NOISE = 0.010  # m, tolerance that suits the noise of time-of-flight and infrared-pattern cameras
+_OWN = 5  # runs of ours in each round
 _LOWEST, _HIGHEST = 0.003, 0.10  # m above the table
 
 _COLUMNS = ["points of", "points", "tolerance mm", "clusters", "ours ms", "PCL ms", "PCL sorted ms", "Open3D ms"]
@@ -83,26 +83,28 @@ def above_table(
 
 def _row(name: str, points: NDArray[np.float32], tolerance: float, rounds: int, pcl: PclRival) -> list[object]:
     pcl.load(points)
-    measured = np.array([list(_times(points, tolerance, pcl)) for _ in range(rounds)])
-    ours, *theirs = np.median(measured, axis=0)
-    labels = euclidean_clusters(points, tolerance)
-    equal = [_same(labels, pcl.clusters(tolerance, sorted_tree=False)[2])]
-    equal.append(_same(labels, open3d_clusters(points, tolerance)[2]))
-    ratios = [float(one / ours) for one in theirs]
-    cells = [float(one) for one in (ours, *theirs)]
-    return [name, len(points), f"{1e3 * tolerance:.0f}", int(labels.max(initial=-1)) + 1, *cells, *ratios, *equal]
+    turns = [_turn(points, tolerance, pcl) for _ in range(rounds)]
+    ours, *theirs = (float(one) for one in np.median([times for times, _ in turns], axis=0))
+    labels, *others = turns[-1][1]
+    ratios = [one / ours for one in theirs]
+    count = int(labels.max(initial=-1)) + 1
+    equal = [_same(labels, other) for other in others]
+    return [name, len(points), f"{1e3 * tolerance:.0f}", count, ours, *theirs, *ratios, *equal]
 
 
-def _times(points: NDArray[np.float32], tolerance: float, pcl: PclRival) -> Iterator[float]:
+def _turn(
+    points: NDArray[np.float32], tolerance: float, pcl: PclRival
+) -> tuple[list[float], tuple[NDArray[np.int32], ...]]:
+    """Processor milliseconds of ours, PCL, PCL with a sorted tree, Open3D; labels of ours, PCL and Open3D."""
     own = []
-    for _ in range(3):
+    for _ in range(_OWN):
         start = time.process_time()
-        euclidean_clusters(points, tolerance)
+        labels = euclidean_clusters(points, tolerance)
         own.append(1e3 * (time.process_time() - start))
-    yield float(np.median(own))
-    yield pcl.clusters(tolerance, sorted_tree=False)[0]
-    yield pcl.clusters(tolerance, sorted_tree=True)[0]
-    yield open3d_clusters(points, tolerance)[0]
+    plain, _, pcl_labels = pcl.clusters(tolerance, sorted_tree=False)
+    ordered, _, _ = pcl.clusters(tolerance, sorted_tree=True)
+    open3d, _, open3d_labels = open3d_clusters(points, tolerance)
+    return [float(np.median(own)), plain, ordered, open3d], (labels, pcl_labels, open3d_labels)
 
 
 def _same(one: NDArray[np.int32], two: NDArray[np.int32]) -> str:

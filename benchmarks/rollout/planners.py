@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from singulation_core.push_world import PushPhysics
+
 _NO_LIMIT = 10**9
 
 
@@ -34,21 +36,42 @@ def _rollout(milliseconds: float, **options: Any) -> Planner:
     return Planner(name, text, "rollout_push", given)
 
 
+def _worked(rollouts: int, **options: Any) -> Planner:
+    """With a limit that does not depend on the speed of the machine."""
+    name = "_".join([f"rollout_{rollouts}", *(f"{key}{value}" for key, value in options.items())])
+    text = f"Rollout Push, {rollouts} simulations" + "".join(f", {key} {value}" for key, value in options.items())
+    return Planner(name, text, "rollout_push", {"budget": 1e6, "rollouts": rollouts, **options})
+
+
 BRUTE_FORCE = Planner("brute_force", "Brute Force", "brute_force")
-BUDGETS: Sequence[float] = (0.0, 0.1, 0.3, 1.0, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0)
+FAST_BRUTE_FORCE = Planner(
+    "brute_force_compiled", "Brute Force in the compiled simulator", "brute_force", {"physics": PushPhysics.fast()}
+)
+BUDGETS: Sequence[float] = (0.0, 0.1, 1.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0, 10000.0)
+WORKED: Sequence[Planner] = tuple(_worked(count) for count in (8, 32, 96, 160, 400))
 NOMINAL: Sequence[Planner] = (
     Planner("cluster_push", "ClusterPush", "cluster_push"),
     Planner("min_overlap", "Minimum Overlap", "min_overlap"),
     BRUTE_FORCE,
+    FAST_BRUTE_FORCE,
     *(_rollout(budget) for budget in BUDGETS),
+    *WORKED,
 )
-LONG: Sequence[Planner] = (_rollout(1000.0), _rollout(10000.0))
-MODES: Sequence[Planner] = (BRUTE_FORCE, _rollout(10.0), _rollout(30.0, best_contact_mode=True))
+MODES: Sequence[Planner] = (
+    BRUTE_FORCE,
+    FAST_BRUTE_FORCE,
+    _worked(160),
+    _worked(480, best_contact_mode=True),
+    _rollout(30.0, best_contact_mode=True),
+)
 ROBUST: Sequence[Planner] = (
     Planner("cluster_push", "ClusterPush", "cluster_push"),
     BRUTE_FORCE,
+    FAST_BRUTE_FORCE,
     _rollout(0.0),
     _rollout(10.0),
+    _worked(160),
+    _worked(64 + 16 * 16 + 17, worlds=16),
     _rollout(26.0, worlds=16),
     _rollout(100.0, worlds=64),
 )

@@ -3,12 +3,13 @@
 import json
 import sys
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from benchmarks.rollout.planners import Planner
+
 from singulation_core import ContactMode, Push, SingulationError
 from singulation_planner import plan_push
 from singulation_planner.benchmark.evaluate import SceneRecipe
@@ -18,6 +19,7 @@ from singulation_planner.benchmark.settings import find_setting
 
 SETTING = find_setting("clutter")
 COUNTS = range(3, 16)
+Judge = Callable[[Scenario, Push], float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,33 +68,53 @@ def plan_one(planner: Planner, scenario: Scenario) -> Plan:
     return Plan(scenario.key, scenario.n, planner.name, seconds, start, end, mode, width, push.expected_gain)
 
 
-class PlanStore:
-    """Plans in a file of JSON lines."""
+class Store:
+    """Plans, and what judges say of them, in two files of JSON lines."""
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._known: dict[tuple[str, str], Plan] = {}
-        if path.exists():
-            for line in path.read_text(encoding="utf-8").splitlines():
-                plan = Plan(**json.loads(line))
-                self._known[plan.scene, plan.planner] = plan
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self._plans_path, self._gains_path = folder / "plans.jsonl", folder / "gains.jsonl"
+        self.plans = {(one.scene, one.planner): one for one in (Plan(**line) for line in _lines(self._plans_path))}
+        self.gains = {(one["scene"], one["planner"], one["judge"]): one["gain"] for one in _lines(self._gains_path)}
 
-    def complete(self, scenes: Sequence[SceneRecipe], planners: Sequence[Planner]) -> dict[tuple[str, str], Plan]:
-        """Plans of all planners for all scenes, by scene and planner; what is missing is planned."""
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        with self._path.open("a", encoding="utf-8") as file:
-            for number, recipe in enumerate(scenes):
-                missing = [
-                    one for one in planners if recipe.n <= one.largest and (recipe.key, one.name) not in self._known
-                ]
-                scenario = recipe.scene() if missing else None
-                for planner in missing:
-                    assert scenario is not None
-                    plan = plan_one(planner, scenario)
-                    self._known[recipe.key, planner.name] = plan
-                    file.write(json.dumps(asdict(plan)) + "\n")
-                file.flush()
-                if missing and number % 40 == 0:
-                    print(f"planned {number + 1} of {len(scenes)} scenes", file=sys.stderr)
-        wanted = {(recipe.key, planner.name) for recipe in scenes for planner in planners}
-        return {key: plan for key, plan in self._known.items() if key in wanted}
+    def complete(self, scenes: Sequence[SceneRecipe], planners: Sequence[Planner], judges: Mapping[str, Judge]) -> None:
+        """Plan and judge whatever is missing."""
+        for number, recipe in enumerate(scenes):
+            asked = [one for one in planners if recipe.n <= one.largest]
+            if all((recipe.key, one.name, judge) in self.gains for one in asked for judge in judges):
+                continue
+            scenario = recipe.scene()
+            for planner in asked:
+                plan = self._planned(planner, scenario)
+                for name, judge in judges.items():
+                    self._judged(plan, scenario, name, judge)
+            if number % 50 == 0:
+                print(f"scene {number + 1} of {len(scenes)}", file=sys.stderr)
+
+    def _planned(self, planner: Planner, scenario: Scenario) -> Plan:
+        key = scenario.key, planner.name
+        if key not in self.plans:
+            self.plans[key] = plan_one(planner, scenario)
+            _append(self._plans_path, asdict(self.plans[key]))
+        return self.plans[key]
+
+    def _judged(self, plan: Plan, scenario: Scenario, name: str, judge: Judge) -> None:
+        key = plan.scene, plan.planner, name
+        if key not in self.gains:
+            self.gains[key] = 0.0 if plan.push is None else judge(scenario, plan.push)
+            gain = self.gains[key]
+            _append(self._gains_path, {"scene": plan.scene, "planner": plan.planner, "judge": name, "gain": gain})
+
+
+def _lines(path: Path) -> Iterator[dict[str, Any]]:
+    if path.exists():
+        for line in path.read_text(encoding="utf-8").splitlines():
+            try:
+                yield json.loads(line)
+            except ValueError:  # the run was stopped while it wrote this one
+                continue
+
+
+def _append(path: Path, record: dict[str, Any]) -> None:
+    with path.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(record) + "\n")

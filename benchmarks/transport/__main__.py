@@ -1,6 +1,6 @@
 """Cloud published to arrangement received, across processes: before and after our transport settings.
 
-scripts/bench transport [--repeats 40] [--out FOLDER]
+scripts/bench transport [--repeats 40] [--points half full] [--out FOLDER]
 """
 
 import argparse
@@ -22,6 +22,7 @@ from singulation_core.transforms import quaternion_of
 from singulation_node.domain import reserved_domain
 
 _LIMIT = 300.0  # s for one row
+_SENSORS = {"half": HALF, "full": FULL}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +47,14 @@ def main() -> int:
     """Measure and write the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeats", type=int, default=40, help="clouds for each row (default 40)")
+    parser.add_argument(
+        "--points", nargs="+", choices=list(_SENSORS), default=list(_SENSORS), help="resolutions (default: both)"
+    )
     parser.add_argument("--out", type=Path, default=Path("bench_results/transport"), help="folder for the tables")
     options = parser.parse_args()
     rows = []
-    for sensor in (HALF, FULL):
-        scene = make_scene(7, sensor)
+    for name in options.points:
+        scene = make_scene(7, _SENSORS[name])
         for receiver in (RELIABLE_ECHO, ECHO, PERCEPTION):
             for settings in SETTINGS:
                 rows.append(_row(scene, settings, receiver, options.repeats))

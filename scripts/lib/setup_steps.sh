@@ -85,7 +85,7 @@ ensure_environment() { # route
   else python=$(find_python '3\.1[123]'); fi
   say "making the virtual environment ${VENV#"$ROOT/"} with $python ($("$python" --version)), ROS: $route"
   "$VENV/bin/python" -c 'import pip' 2>/dev/null || "$python" -m venv --clear "${options[@]}" "$VENV"
-  say "installing Python packages (about 1.3 GB on disk, 1 to 3 minutes)"
+  say "installing Python packages (about 2.2 GB on disk, 1 to 3 minutes)"
   if [[ $route == pypi ]]; then
     local constraint=(-c "$ROOT/requirements/constraints.txt")
   else

@@ -7,7 +7,15 @@ DEFAULT_MIN_GAP = 0.012
 # It looks for gaps all around, where the paper's policies look for a large mean distance.
 DEFAULT_POLICY = "rollout_push"
 # Asked in this order when a planned push cannot be performed.
-FALLBACK_POLICIES = ("min_overlap", "center_object_removal", "cluster_diffusion", "boundary_shear")
+FALLBACK_POLICIES = (
+    "min_overlap",
+    "center_object_removal",
+    "cluster_diffusion",
+    "boundary_shear",
+    "min_contact_range",
+    "two_cluster_separation",
+    "quasi_random",
+)
 # A gap is seen within this [m]; without it, blocks that are just far enough apart look as if they were not.
 _SEEN_WITHIN = 0.002
 

@@ -5,6 +5,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from singulation_bringup.policy_choice import DEFAULT_POLICY
 from singulation_bringup.singulation_progress import Outcome, Progress, SingulationResult
 from singulation_bringup.tracking import Tracked, Tracker
@@ -186,11 +188,15 @@ class SingulationLoop:
         Raises:
             SingulationError: ``NO_HELPFUL_PUSH`` with every refusal, or why the planner cannot answer at all.
         """
-        refusals = []
+        refusals: list[str] = []
+        refused: list[Push] = []
         for policy in dict.fromkeys((self._goal.policy, *self._goal.fallback_policies)):
             self._cell.check_cancelled()
             try:
                 push = self._cell.plan(self._seen, policy, self._goal.contact_mode, self._goal.min_gap)
+                if any(_same(push, one) for one in refused):
+                    refusals.append(f"{policy}: the same push")
+                    continue
             except SingulationError as error:
                 if error.code not in _TRY_ANOTHER:
                     raise
@@ -202,6 +208,7 @@ class SingulationLoop:
                 if error.code not in _TRY_ANOTHER:
                     return push, error
                 refusals.append(f"{policy}: {error}")
+                refused.append(push)
                 continue
             return push, None
         raise SingulationError(ResultCode.NO_HELPFUL_PUSH, "; ".join(refusals))
@@ -222,6 +229,11 @@ class SingulationLoop:
         )
         progress.outcomes.append(outcome)
         self._report(progress)
+
+
+def _same(push: Push, other: Push) -> bool:
+    """Whether two pushes are one for the robot: ends within a tenth of a millimetre."""
+    return bool(np.allclose((push.start, push.end), (other.start, other.end), rtol=0.0, atol=1e-4))
 
 
 def _expected(push: Push, failure: SingulationError | None, before: Tracked) -> Arrangement | None:

@@ -20,7 +20,7 @@ class ScriptedCell:
     def __init__(self, count=2, faults=(), plan_faults=(), cancel_after=None):
         self.gap, self.count = 0.001, count
         self.faults, self.plan_faults = list(faults), list(plan_faults)
-        self.cancel_after, self.asked = cancel_after, []
+        self.cancel_after, self.asked, self.differ = cancel_after, [], True
 
     def look(self):
         return row(self.gap, self.count)
@@ -28,7 +28,8 @@ class ScriptedCell:
     def plan(self, seen, policy, mode, min_gap):
         self.asked.append(policy)
         self._stumble(self.plan_faults)
-        return Push((-0.02, 0.02), (0.02, 0.02), mode, 0.0, target_id=0, policy=policy)
+        across = 0.001 * (policy != DEFAULT_POLICY) * self.differ
+        return Push((-0.02, 0.02 + across), (0.02, 0.02 + across), mode, 0.0, target_id=0, policy=policy)
 
     def execute(self, push):
         self._stumble(self.faults)
@@ -93,6 +94,15 @@ def test_all_refused_is_no_helpful_push_with_every_reason():
     assert result.code is ResultCode.NO_HELPFUL_PUSH
     assert "NO_PUSH" in result.message
     assert "UNREACHABLE" in result.message
+
+
+def test_a_refused_push_is_not_tried_again_under_another_name():
+    cell = ScriptedCell(faults=[ResultCode.PATH_BLOCKED])
+    cell.differ = False
+    result, _ = run(cell)
+    assert result.code is ResultCode.NO_HELPFUL_PUSH
+    assert cell.asked == [DEFAULT_POLICY, "second"]
+    assert "second: the same push" in result.message
 
 
 def test_a_stopped_push_is_an_outcome_and_the_next_look_decides():

@@ -7,17 +7,35 @@ from numba import njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_USUAL = {"cache": True, "nogil": True, "error_model": "numpy"}
+_USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 def compiled(function: Function) -> Function:
-    """Compile a function that only reads and writes arrays which its caller holds.
+    """Compile a function that Python calls and that only reads and writes arrays which its caller holds.
 
     Such a function needs no reference counts. With them, calls that pass two dozen arrays took three quarters of the
     time of a push; a Numba that does not know the option compiles the same function, only slower.
     """
+    return _compiled(function, cache=True)
+
+
+def compiled_part(function: Function) -> Function:
+    """The same for a function that only compiled ones call: it is kept on disk as part of them.
+
+    Without an entry for Python and a cache of its own it compiles in a fraction of the time.
+    """
+    return _compiled(function, no_cpython_wrapper=True)
+
+
+def compiled_maker(function: Function) -> Function:
+    """As ``compiled``, for a function that makes arrays: it counts references."""
+    done: Function = njit(**_USUAL, cache=True)(function)
+    return done
+
+
+def _compiled(function: Function, **options: bool) -> Function:
     try:
-        done: Function = njit(**_USUAL, _nrt=False)(function)
+        done: Function = njit(**_USUAL, **options, _nrt=False)(function)
     except (KeyError, TypeError):
-        done = njit(**_USUAL)(function)
+        done = njit(**_USUAL, **options)(function)
     return done

@@ -1,5 +1,6 @@
 """A straight push and the jaws that perform it."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,7 +56,7 @@ class Push:
     @property
     def length(self) -> float:
         """Distance from start to end [m]."""
-        return float(np.hypot(*(self.end - self.start)))
+        return math.hypot(*(self.end - self.start).tolist())
 
     @property
     def direction(self) -> FloatArray:
@@ -65,7 +66,7 @@ class Push:
 
 def _point(value: ArrayLike, name: str) -> FloatArray:
     point = np.array(value, dtype=np.float64)
-    if point.shape != (2,) or not np.isfinite(point).all():
+    if point.shape != (2,) or not all(map(math.isfinite, point.tolist())):
         raise InvalidInputError(f"push: {name} {point.tolist()}, need two finite numbers")
     point.setflags(write=False)
     return point

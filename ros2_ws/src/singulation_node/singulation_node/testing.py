@@ -1,6 +1,7 @@
 """What node tests need: a domain of their own, nodes that spin in the background, waiting for conditions."""
 
 import contextlib
+import gc
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -25,6 +26,9 @@ def ros_context() -> Iterator[Context]:
             yield context
         finally:
             context.try_shutdown()
+            # Nodes are in reference cycles. Until those are collected, their DDS participant keeps its place in the
+            # domain, and after some thirty of them other processes are no longer found.
+            gc.collect()
 
 
 @contextlib.contextmanager

@@ -100,7 +100,7 @@ class FaceBlocks:
     def _evidence(self, k: int, scale: Scale, ring: FloatArray, outline: FloatArray, lead: float) -> Evidence:
         face = self.maps.faces[k]
         count, holes = float(self.faces.count[face]), float(self.faces.holes[face])
-        concave = concave_cost(ring, scale.roughness) >= CONVEX
+        concave = self.rings.concave[k] > 0.0 and concave_cost(ring, scale.roughness) >= CONVEX
         return Evidence(
             supported=float(supported_share(outline, ring, scale.roughness + scale.growth, scale.pitch)),
             filled=1.0 if self.rings.concave[k] > 0.0 else count / (count + holes),
@@ -114,9 +114,9 @@ class FaceBlocks:
         limits = self.parameters.workspace
         if limits is not None:
             margin = _BORDER * pitch
-            low, high = outline.min(axis=0), outline.max(axis=0)
-            inside = low[0] > limits[0] + margin and high[0] < limits[1] - margin
-            if not (inside and low[1] > limits[2] + margin and high[1] < limits[3] - margin):
+            across, up = zip(*outline.tolist(), strict=True)
+            inside = min(across) > limits[0] + margin and max(across) < limits[1] - margin
+            if not (inside and min(up) > limits[2] + margin and max(up) < limits[3] - margin):
                 return True
         if self.view.cloud is None:
             return False

@@ -43,9 +43,11 @@ def face_image(
         ring: (m, 2) rim [m].
         pixels: (m, 2) rows and columns of the rim in the cloud.
     """
-    design = np.column_stack((ring, np.ones(len(ring))))
-    to_pixel = np.linalg.lstsq(design, (pixels - corner).astype(np.float64), rcond=None)[0].T
-    return FaceImage(corner, np.ascontiguousarray(point), xyz, np.ascontiguousarray(to_pixel))
+    middle = ring.mean(axis=0)
+    places, seen = ring - middle, (pixels - corner).astype(np.float64)
+    turn = np.linalg.lstsq(places.T @ places, places.T @ seen, rcond=None)[0].T
+    to_pixel = np.column_stack((turn, seen.mean(axis=0) - turn @ middle))
+    return FaceImage(corner, point, xyz, to_pixel)
 
 
 def to_table(image: FaceImage) -> FloatArray:

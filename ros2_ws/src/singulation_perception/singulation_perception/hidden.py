@@ -10,7 +10,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
 from singulation_perception.raster import Raster
-from singulation_perception.rings import hull_indices, pocket_depths
+from singulation_perception.rings import hull_indices, pockets
 
 _COVERED = 0.5  # share of a pocket filled by something taller that may lie on the block
 _SEEN_LOWER = 0.3  # share of a pocket that is seen to be lower, from which on it is empty
@@ -56,7 +56,7 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
     way = view.camera[:2] - ring[0]
     reach = float(np.hypot(*way)) / max(abs(float(view.camera[2]) - height), 1e-3) + _SHADOW
     plane = view.plane.astype(np.float32)
-    for first, last, depth in pocket_depths(ring, hull_indices(ring), roughness):
+    for first, last, _, depth in pockets(ring, hull_indices(ring), roughness):
         around = np.arange(int(first), int(last) + 1) % len(ring)
         pocket = np.ascontiguousarray(pixels[around])
         low, high = np.float32(height - roughness), np.float32(height + roughness)

@@ -87,6 +87,7 @@ def _collect(
     x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
     levels = np.empty(right - left, dtype=np.float32)
     count, run, outside = 0, -1, 0
+    before, stop, low, high = lowest, 0, lowest, lowest
     for row in range(top, bottom):
         start = np.uintp(row * cloud.row_step + left * cloud.point_step)
         _heights(numbers, start, point_step, pose, levels)
@@ -110,15 +111,18 @@ def _collect(
                     continue
                 if not (level < _TOO_FAR) or (a == 0.0 and b == 0.0 and c == 0.0):
                     continue
-                if last != column - 1 or not (abs(level - levels[last]) <= step):
+                if last != column - 1 or not (abs(level - before) <= step):
+                    if run >= 0:
+                        runs[run, 2], spans[run, 0], spans[run, 1] = stop, low, high
                     run += 1
                     runs[run, 0], runs[run, 1], runs[run, 3] = row, left + column, count
-                    spans[run, 0], spans[run, 1] = level, level
-                last = column
-                runs[run, 2] = left + column + 1
-                spans[run, 0], spans[run, 1] = min(spans[run, 0], level), max(spans[run, 1], level)
+                    low, high = level, level
+                last, before, stop = column, level, left + column + 1
+                low, high = min(low, level), max(high, level)
                 xyz[count, 0], xyz[count, 1], xyz[count, 2] = x, y, level
                 count += 1
+    if run >= 0:
+        runs[run, 2], spans[run, 0], spans[run, 1] = stop, low, high
     return count, run + 1, outside
 
 

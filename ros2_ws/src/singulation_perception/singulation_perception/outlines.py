@@ -9,6 +9,7 @@ from singulation_perception.jit import compiled, compiled_part
 from singulation_perception.rings import Scale, hull_indices
 
 _ROUNDS = 4
+_SETTLED = 1e-6  # [m] corners that move less are where they belong
 _MARGIN = 2.0  # pitches from a corner in which points may belong to the other edge
 
 
@@ -52,9 +53,22 @@ def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scal
         moved, meeting = corners_of(lines, 0.0)
         if not meeting or not _in_order(moved, lines):
             break
+        settled = round_ > 0 and _same(moved, corners)
         corners = moved
         grown, _ = corners_of(lines, scale.growth)
+        if settled:
+            break
     return grown, good and len(grown) >= 3
+
+
+@compiled_part
+def _same(one: FloatArray, two: FloatArray) -> bool:
+    if len(one) != len(two):
+        return False
+    for i in range(len(one)):
+        if abs(one[i, 0] - two[i, 0]) > _SETTLED or abs(one[i, 1] - two[i, 1]) > _SETTLED:
+            return False
+    return True
 
 
 @compiled_part

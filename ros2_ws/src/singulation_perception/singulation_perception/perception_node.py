@@ -94,6 +94,13 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
         """Stop listening to TF."""
         self._camera.close()
 
+    def destroy_node(self) -> None:
+        """End the worker too: its thread would keep an active node, and its place in the ROS domain, for ever."""
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.stop(_STOP_TIMEOUT)
+        super().destroy_node()
+
     @guarded
     def _take(self, message: PointCloud2) -> None:
         self.ledger.received(time.monotonic())

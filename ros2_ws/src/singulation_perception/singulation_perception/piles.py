@@ -23,7 +23,7 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
         The blocks, and how many lie on others and became part of their pile.
     """
     waiting = sorted(blocks, key=lambda block: block.height)
-    if not _any_near(waiting, step):
+    if not any(_overlap(waiting[i], waiting[j]) for i, j in _near_pairs(waiting, step)):
         return waiting, 0
     done: list[FoundBlock] = []
     stacked = 0
@@ -41,14 +41,21 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
     return done, stacked
 
 
-def _any_near(blocks: list[FoundBlock], step: float) -> bool:
-    """Whether the bounding circles of any two blocks of different height meet."""
+def _near_pairs(blocks: list[FoundBlock], step: float) -> list[tuple[int, int]]:
+    """Lower and higher block of all pairs of different height whose bounding circles meet."""
     if len(blocks) < 2:
-        return False
+        return []
     centres = np.array([block.centre for block in blocks])
     radii, heights = (np.array([getattr(block, name) for block in blocks]) for name in ("radius", "height"))
     apart = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
-    return bool(((apart < radii[:, None] + radii[None]) & (heights[:, None] > heights[None] + step)).any())
+    near = (apart < radii[:, None] + radii[None]) & (heights[None] > heights[:, None] + step)
+    return [(int(i), int(j)) for i, j in np.argwhere(near)]
+
+
+def _overlap(lower: FoundBlock, upper: FoundBlock) -> bool:
+    """Whether they overlap more than noise explains."""
+    shared = float(shared_area(lower.outline, upper.outline))
+    return shared > min(_STACKED * signed_area(upper.outline), _NEGLIGIBLE * signed_area(lower.outline))
 
 
 def _near(one: FoundBlock, two: FoundBlock) -> bool:

@@ -7,6 +7,7 @@ from singulation_perception.jit import compiled, compiled_sums
 
 _SCORED = 2_000  # points that score a hypothesis
 _ROUNDS = 4
+_SETTLED = 0.02  # relative change of the noise that ends the fit
 
 
 def best_plane(points: FloatArray, hypotheses: int, reach: float, first: FloatArray | None = None) -> FloatArray | None:
@@ -69,10 +70,12 @@ def refined_plane(points: FloatArray, plane: FloatArray, reach: float) -> tuple[
         normal = np.linalg.eigh(moments)[1][:, 0]
         normal = normal if normal @ plane[:3] > 0.0 else -normal
         plane = np.append(normal, -normal @ centre)
-        some = points[:: max(1, len(points) // 4000)] @ normal + plane[3]
-        near = some[np.abs(some) <= reach]
-        noise = 1.4826 * float(np.median(np.abs(near))) if len(near) else reach
+        some = np.abs(points[:: max(1, len(points) // 4000)] @ normal + plane[3])
+        near = some[some <= reach]
+        before, noise = noise, 1.4826 * float(np.median(near)) if len(near) else reach
         reach = max(3.5 * noise, 1e-6)
+        if abs(noise - before) < _SETTLED * noise:
+            break
     return plane, noise, reach
 
 

@@ -29,6 +29,7 @@ from singulation_perception.bag_writing import BagRecorder
 EXIT_FAILED, EXIT_NOTHING_TO_RECORD = 1, 3
 _POLL = 0.05  # s
 _DEPTH = 5  # clouds that may wait for the disk
+_EMPTY_LOOKS = 6  # after which nothing is waiting any more
 
 
 class RecordNode(Node):
@@ -118,11 +119,15 @@ def _run(node: RecordNode, options: argparse.Namespace, recorder: BagRecorder, s
 
 
 def _take_the_rest(executor: SingleThreadedExecutor, recorder: BagRecorder) -> None:
-    """What has arrived but was not looked at yet, when the end came by a signal or by time."""
-    before = -1
-    while recorder.count != before:
-        before = recorder.count
+    """What has arrived but was not looked at yet, when the end came by a signal or by time.
+
+    One empty look proves nothing: the executor may have been busy with an event of the middleware.
+    """
+    empty, before = 0, recorder.count
+    while empty < _EMPTY_LOOKS:
         executor.spin_once(timeout_sec=_POLL)
+        empty = empty + 1 if recorder.count == before else 0
+        before = recorder.count
 
 
 def main(args: Sequence[str] | None = None) -> int:

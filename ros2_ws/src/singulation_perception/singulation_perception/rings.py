@@ -104,50 +104,38 @@ def _turn(ring: FloatArray, a: int, b: int, c: int) -> float:
 @compiled_part
 def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     """Area between a ring and its hull, of the pockets deeper than the roughness of the rim [m^2]."""
+    found = pockets(ring, hull, roughness)
     total = 0.0
-    for first, last in pockets(ring, hull, roughness):
-        total += _pocket(ring, np.int64(first), np.int64(last))[0]
+    for k in range(len(found)):
+        total += found[k, 2]
     return total
 
 
 @compiled
-def pocket_depths(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
-    """(p, 3) pockets as from ``pockets``, and how deep each is [m]."""
-    found = pockets(ring, hull, roughness)
-    deep = np.empty((len(found), 3))
-    for k in range(len(found)):
-        first, last = np.int64(found[k, 0]), np.int64(found[k, 1])
-        deep[k, 0], deep[k, 1], deep[k, 2] = first, last, _pocket(ring, first, last)[1]
-    return deep
-
-
-@compiled_part
-def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> IntArray:
-    """(p, 2) first and last point of each pocket between ring and hull that is deeper than ``roughness`` [m].
+def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
+    """(p, 4) of the pockets between ring and hull that are deeper than ``roughness`` [m]: first and last point, area
+    [m^2] and depth [m].
 
     The last may lie beyond the end of the ring: count on from its start.
     """
     corners = _in_order(hull)
-    found = np.empty((len(corners), 2), dtype=np.int32)
+    found = np.empty((len(corners), 4))
     count = 0
     for k in range(len(corners)):
         first = np.int64(corners[k])
         last = np.int64(corners[k + 1]) if k + 1 < len(corners) else np.int64(corners[0]) + len(ring)
-        if last - first > _RANK and _pocket(ring, first, last)[1] > roughness:
-            found[count, 0], found[count, 1] = first, last
-            count += 1
+        if last - first > _RANK:
+            area, depth = _pocket(ring, first, last)
+            if depth > roughness:
+                found[count, 0], found[count, 1], found[count, 2], found[count, 3] = first, last, area, depth
+                count += 1
     return found[:count]
 
 
 @compiled_part
 def _in_order(hull: IntArray) -> IntArray:
     """Numbers of the corners sorted: noise along the line of sight can make a ring, and with it its hull, skip back."""
-    start = 0
-    for k in range(len(hull)):
-        start = k if hull[k] < hull[start] else start
-    corners = np.empty_like(hull)
-    for k in range(len(hull)):
-        corners[k] = hull[(start + k) % len(hull)]
+    corners = hull.copy()
     for k in range(1, len(corners)):
         value, at = corners[k], k
         while at > 0 and corners[at - 1] > value:

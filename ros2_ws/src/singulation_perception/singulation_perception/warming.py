@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from singulation_perception.segmentation import segment_cloud
 
-_PITCH = 0.002
+_PITCH = 0.001
 
 
 def warm_up() -> None:
@@ -13,17 +13,21 @@ def warm_up() -> None:
 
     With empty caches this compiles for some ten seconds; after that it takes a fraction of a second.
     """
-    image = _two_touching_blocks()
-    image.setflags(write=False)
+    image = _every_kind_of_block()
     for cloud in (image, image.reshape(-1, 3)):
         _ = segment_cloud(cloud).labels
 
 
-def _two_touching_blocks() -> NDArray[np.float32]:
-    """(90, 120, 3): an L of two blocks on a table 0.5 m below the camera."""
-    x, y = np.meshgrid(np.arange(120) * _PITCH - 0.12, np.arange(90) * _PITCH - 0.09)
+def _every_kind_of_block() -> NDArray[np.float32]:
+    """(120, 160, 3): on a table 0.5 m below the camera an L of two blocks, two flush ones with a groove between them,
+    two flush ones of nearly the same height, and a low one beside them.
+    """
+    x, y = np.meshgrid(np.arange(160) * _PITCH - 0.08, np.arange(120) * _PITCH - 0.06)
     depth = np.full(x.shape, 0.5)
-    depth[20:50, 20:50] = 0.47
-    depth[30:70, 50:80] = 0.47
+    depth[10:40, 10:40] = depth[20:60, 40:70] = 0.47
+    depth[10:50, 85:115] = 0.47
+    depth[10:50, 99:101:2] = np.nan
+    depth[70:90, 20:80], depth[90:110, 20:80] = 0.47, 0.4695
+    depth[75:105, 82:110] = 0.485
     depth += 1e-4 * np.sin(97.0 * np.arange(x.size).reshape(x.shape))
     return np.stack((x, y, depth), axis=-1).astype(np.float32)

@@ -42,6 +42,9 @@ class PlannerSettings:
     worlds: int = parameter(
         _ROLLOUT.worlds, "rollout_push: sampled worlds in which the best pushes are judged", low=1, high=1000
     )
+    look_ahead: int = parameter(
+        _ROLLOUT.look_ahead, "rollout_push: pushes ahead that the best ones are judged by; 1: greedy", low=1, high=3
+    )
     contact_mode: str = parameter(
         ContactMode.SINGLE_POINT.label,
         "how the jaws touch, for pushes planned on arrival; a request says it itself",

@@ -1,6 +1,7 @@
 """An arrangement as flat arrays in an order that does not depend on how its objects are numbered."""
 
 from dataclasses import dataclass
+from itertools import accumulate
 from math import fsum, hypot
 from typing import Self
 
@@ -59,11 +60,10 @@ class Scene:
             )
         order = _canonical_order(arrangement)
         outlines = [arrangement.objects[k].outline for k in order]
-        firsts = np.zeros(n + 1, dtype=np.int64)
-        np.cumsum([len(outline) for outline in outlines], out=firsts[1:])
+        firsts = np.array((0, *accumulate(map(len, outlines))), dtype=np.int64)
         index = np.array(order)
         radii = arrangement.bounding_radii[index]
-        scale = float(radii.sum()) / n
+        scale = fsum(radii.tolist()) / n
         scene = cls(arrangement, order, arrangement.centroids[index], radii, np.concatenate(outlines), firsts, scale)
         scene._refuse_overlaps(overlap_tolerance)
         return scene
@@ -81,6 +81,14 @@ class Scene:
         numbered = np.empty_like(poses)
         numbered[list(self.order)] = poses
         return displaced(self.arrangement, numbered)
+
+    def after(self, poses: FloatArray) -> "Scene":
+        """The scene with the objects at ``poses`` (n, 3) in canonical order.
+
+        Raises:
+            SingulationError: as ``of``.
+        """
+        return Scene.of(self.displaced(poses))
 
     def object_id(self, index: int) -> int:
         """Id of the object at this place of the canonical order."""

@@ -8,9 +8,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from singulation_core import ContactMode, InvalidInputError, ResultCode, SingulationError, singulation_distance
+from singulation_core import (
+    ContactMode,
+    InvalidInputError,
+    ResultCode,
+    SingulationError,
+    singulation_distance,
+    smallest_gap,
+)
 from singulation_core.push_world import PushPhysics, simulate_push
+from singulation_core.push_world.compiled import DIVERGED, CompiledWorld
 from singulation_planner import plan_push
+from singulation_planner.placer import NOT_SIMULATED
+from singulation_planner.rollout.judge import Judge
 from singulation_planner.testing import clutter, squares
 
 OBJECTIVES = ("singulation_distance", "clearance")
@@ -65,3 +75,61 @@ def test_bad_options_are_named():
         plan(scene, min_gap=0.0)
     assert caught.value.code is ResultCode.NOTHING_TO_DO
     assert plan(scene, budget="5", objective="clearance").target_id in (0, 1, 2)
+
+
+def test_in_sampled_worlds_the_same_seed_gives_the_same_push():
+    scene = clutter(5, 7)
+    first, second, other = (plan(scene, worlds=4, rollouts=150, seed=seed) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first.start, second.start)
+    assert first.expected_gain == second.expected_gain != other.expected_gain
+
+
+def test_more_work_in_sampled_worlds_never_expects_less():
+    scene = clutter(5, 11)
+    gains = [plan(scene, worlds=4, rollouts=limit).expected_gain for limit in (6, 80, 110, 140, 260)]
+    assert all(later >= earlier - 1e-9 for earlier, later in itertools.pairwise(gains))
+
+
+def test_looking_ahead_takes_a_push_that_leads_further():
+    scene = clutter(5, 3)
+    options = {"objective": "clearance", "budget": 60000.0}
+    greedy, ahead = plan(scene, **options), plan(scene, look_ahead=2, rollouts=600, **options)
+    following = [plan(one.expected, **options).expected for one in (greedy, ahead)]
+    assert smallest_gap(following[1]) >= smallest_gap(following[0]) - 1e-3
+    with pytest.raises(InvalidInputError, match="look_ahead"):
+        plan(scene, look_ahead=2, worlds=2)
+
+
+def test_simulations_that_fail_are_left_out_and_counted(monkeypatch):
+    scene, rejected = clutter(4, 1), []
+    roll_out = CompiledWorld.roll_out
+
+    def blown_up(self, starts, ends):
+        poses, codes = roll_out(self, starts, ends)
+        poses[::2], codes[::2] = np.nan, DIVERGED
+        return poses, codes
+
+    outcomes = Judge.outcomes
+
+    def counted(self, proposals):
+        found = outcomes(self, proposals)
+        rejected.append(self.placer.rejected[NOT_SIMULATED])
+        return found
+
+    monkeypatch.setattr(CompiledWorld, "roll_out", blown_up)
+    monkeypatch.setattr(Judge, "outcomes", counted)
+    push = plan(scene, rollouts=20)
+    assert push.expected is not None
+    assert rejected[-1] >= 9
+    monkeypatch.setattr(CompiledWorld, "roll_out", lambda self, starts, ends: (np.full((len(starts), 4, 3), np.nan), 0))
+    assert plan(scene, rollouts=20).expected is None
+    monkeypatch.undo()
+    assert plan(scene, rollouts=20).expected is not None
+
+
+def test_the_contact_mode_with_the_best_value_is_chosen():
+    scene = clutter(6, 5)
+    gains = {mode: plan(scene, contact_mode=mode, rollouts=40).expected_gain for mode in ContactMode}
+    best = plan(scene, best_contact_mode=True, rollouts=120)
+    assert best.contact_mode is max(gains, key=gains.__getitem__)
+    assert best.expected_gain == max(gains.values())

@@ -40,6 +40,7 @@ class CommandNode:
         self.node = rclpy.create_node(name, context=self._context, start_parameter_services=False)
         self._executor = MultiThreadedExecutor(num_threads=2, context=self._context)
         self._executor.add_node(self.node)
+        self._clients: dict[str, Any] = {}
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._spin, name="executor", daemon=True)
 
@@ -102,14 +103,14 @@ class CommandNode:
         Raises:
             SingulationError: ``TIMEOUT`` or ``CANCELLED``.
         """
-        client = self.node.create_client(kind, name)
-        try:
-            self.wait(client.service_is_ready, ready, f"service {client.srv_name}")
-            future = client.call_async(request)
-            self.wait(future.done, answer, f"answer of {client.srv_name}")
-            return future.result()
-        finally:
-            self.node.destroy_client(client)
+        # Kept until the end: one destroyed while the other thread looks for its next answer would end the spinning.
+        if name not in self._clients:
+            self._clients[name] = self.node.create_client(kind, name)
+        client = self._clients[name]
+        self.wait(client.service_is_ready, ready, f"service {client.srv_name}")
+        future = client.call_async(request)
+        self.wait(future.done, answer, f"answer of {client.srv_name}")
+        return future.result()
 
     def _spin(self) -> None:
         while not self._stop.is_set():

@@ -37,6 +37,7 @@ class Observer:
         self._executor.add_node(self.node)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._clients: dict[str, Any] = {}
         self._statuses: dict[str, dict[str, str]] = {}
         self.hear(DiagnosticArray, "/diagnostics", self._on_diagnostics, STATE)
 
@@ -89,14 +90,14 @@ class Observer:
         Raises:
             SingulationError: ``TIMEOUT``.
         """
-        client = self.node.create_client(kind, name)
-        try:
-            self.wait(client.service_is_ready, timeout, f"service {name}")
-            future = client.call_async(request)
-            self.wait(future.done, timeout, f"answer of {name}")
-            return future.result()
-        finally:
-            self.node.destroy_client(client)
+        # Kept until the end: one destroyed while another thread looks for its next answer would end the spinning.
+        if name not in self._clients:
+            self._clients[name] = self.node.create_client(kind, name)
+        client = self._clients[name]
+        self.wait(client.service_is_ready, timeout, f"service {name}")
+        future = client.call_async(request)
+        self.wait(future.done, timeout, f"answer of {name}")
+        return future.result()
 
     def action(
         self, kind: Any, name: str, goal: Any, on_feedback: Callable[[Any], None], timeout: float

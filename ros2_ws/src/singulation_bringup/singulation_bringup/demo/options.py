@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from singulation_bringup.policy_choice import DEFAULT_POLICY
 from singulation_core import ContactMode, InvalidInputError
 
 PARTS = ("all", "replay", "cell")
@@ -87,7 +88,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--objects", type=int, default=5, help="blocks on the simulated table (default: %(default)s)")
     modes = [mode.label for mode in ContactMode]
     parser.add_argument("--contact-mode", choices=modes, default=modes[0], help="how to push (default: %(default)s)")
-    parser.add_argument("--policy", default="cluster_push", help="push policy (default: %(default)s)")
+    parser.add_argument(
+        "--policy",
+        default=DEFAULT_POLICY,
+        help="push policy, for example cluster_push, the paper's (default: %(default)s)",
+    )
     parser.add_argument("--max-pushes", type=int, default=12, help="at most so many (default: %(default)s)")
     parser.add_argument(
         "--min-gap",

@@ -18,7 +18,7 @@ from singulation_planner.benchmark.run import BRUTE_FORCE
 from singulation_planner.benchmark.scenario import Scenario
 from singulation_planner.benchmark.settings import Setting
 
-_REPEATS = 5  # the fastest counts: what is slower is other work on the machine
+_REPEATS = 25  # the fastest counts: what is slower is other work on the machine
 _LARGE = 30  # from here on the growth shows; below, calling a planner at all takes longer than planning
 _SIMULATED_UP_TO = 15  # Brute Force takes n^2 pushes
 

@@ -1,13 +1,13 @@
 """How a block goes when the tip of a jaw pushes it and nothing else is in its way."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
 
-@njit(cache=True)
+@compiled_part
 def _squared_gyration(vertices: FloatArray, first: int, last: int, x: float, y: float) -> float:
     """Moment of inertia over mass about (x, y) [m^2]."""
     area, moment = 0.0, 0.0
@@ -21,7 +21,7 @@ def _squared_gyration(vertices: FloatArray, first: int, last: int, x: float, y: 
     return moment / (6.0 * area)
 
 
-@njit(cache=True)
+@compiled_part
 def _nearest(
     vertices: FloatArray, first: int, last: int, x: float, y: float, tip_x: float, tip_y: float
 ) -> tuple[float, float, float, float, float]:
@@ -46,7 +46,7 @@ def _nearest(
     return px, py, nx / distance, ny / distance, distance
 
 
-@njit(cache=True)
+@compiled_part
 def _force(
     nx: float, ny: float, rx: float, ry: float, dx: float, dy: float, gyration: float, friction: float
 ) -> tuple[float, float, float]:
@@ -62,7 +62,7 @@ def _force(
     return fx, fy, (rx * fy - ry * fx) / gyration
 
 
-@njit(cache=True)
+@compiled_maker
 def paths_alone(
     centroids: FloatArray,
     vertices: FloatArray,

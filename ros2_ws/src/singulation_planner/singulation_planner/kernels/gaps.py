@@ -6,6 +6,8 @@ from numba import njit
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
+_PAIRS = 0.3  # weight of what the gaps of all pairs lack, beside each block's smallest gap
+
 
 @njit(cache=True)
 def _one_sided(corners: FloatArray, first: int, last: int, other_first: int, other_last: int) -> tuple[float, float]:
@@ -65,19 +67,26 @@ def _nearest_gaps(
     corners: FloatArray,
     firsts: IntArray,
     gaps: FloatArray,
+    width: float,
     nearest: FloatArray,
-) -> None:
-    """Lower ``nearest`` (n,) to the gap of each block to its nearest other one."""
-    n = len(radii)
+) -> float:
+    """Lower ``nearest`` (n,) to the gap of each block to its nearest other one, at most ``width``.
+
+    Returns:
+        Sum over all pairs of what their gap lacks to ``width``.
+    """
+    n, lacking = len(radii), 0.0
     for i in range(n):
         for j in range(i):
             gap = gaps[i, j]
             if moved[i] != 0 or moved[j] != 0:
                 dx, dy = pose[i, 0] - pose[j, 0], pose[i, 1] - pose[j, 1]
                 gap = np.sqrt(dx * dx + dy * dy) - radii[i] - radii[j]
-                if gap < max(nearest[i], nearest[j]):
+                if gap < width:
                     gap = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
             nearest[i], nearest[j] = min(nearest[i], gap), min(nearest[j], gap)
+            lacking += width - min(width, max(0.0, gap))
+    return lacking
 
 
 @njit(cache=True)
@@ -123,8 +132,9 @@ def outcome_values(
         width: gap beyond which nothing is gained [m]; 0: clearances are not asked for.
         floor: smallest distance that counts [m].
         changes: (m,) written: change of the mean log distance of all pairs.
-        clearances: (m,) written: mean over the blocks of the gap to the nearest other one, in units of ``width`` and
-            at most 1.
+        clearances: (m,) written: mean over the blocks of the gap to the nearest other one, at most ``width``, less a
+            share of what the gaps of all pairs lack to ``width`` (else nothing is gained by freeing a block of one of
+            several neighbours); in units of ``width``.
     """
     n = len(radii)
     corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n, dtype=np.int64)
@@ -141,6 +151,7 @@ def outcome_values(
         if width > 0.0:
             for i in range(n):
                 _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)
-            _nearest_gaps(pose, moved, radii, corners, firsts, gaps, nearest)
+            lacking = _nearest_gaps(pose, moved, radii, corners, firsts, gaps, width, nearest)
             for i in range(n):
-                clearances[c] += max(0.0, nearest[i]) / (n * width)
+                clearances[c] += (1.0 - _PAIRS) * max(0.0, nearest[i]) / (n * width)
+            clearances[c] -= _PAIRS * lacking / (n * width)

@@ -57,8 +57,7 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
     order = order[np.isfinite(changes[order])]
     task.placer.rejected[NOT_SIMULATED] += len(chosen) - len(order)
     best = chosen[order]
-    ordered = scene.in_order()
-    gains = np.array([relative_gain(change, ordered) for change in changes[order].tolist()])
+    gains = changes[order] * relative_gain(1.0, scene.in_order())
     yield Candidates(candidates.objects[best], candidates.directions[best], candidates.offsets[best], gains)
 
 

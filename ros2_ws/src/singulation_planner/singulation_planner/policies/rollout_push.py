@@ -16,6 +16,7 @@ from singulation_core.push_world import PushPhysics
 from singulation_planner.candidates import Candidates
 from singulation_planner.policy import Task, policy
 from singulation_planner.rollout.judge import Judge
+from singulation_planner.rollout.look_ahead import LookAhead
 from singulation_planner.rollout.objective import make_objective
 from singulation_planner.rollout.options import Options
 from singulation_planner.rollout.proposals import by_score
@@ -33,7 +34,13 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
         ordered = task.scene.in_order()
         judge = Judge(task.placer, objective, _fast(task.physics), ordered, options.worlds, task.seed)
         limit = math.ceil(options.rollouts * task.share)
-        best = Search(task.placer, judge, limit, task.random(), deadline).run(ranked)
+        search = Search(task.placer, judge, limit, task.random(), deadline)
+        if options.worlds > 1:
+            search = replace(search, final=judge.in_all_worlds, final_cost=options.worlds)
+        elif options.look_ahead > 1:
+            ahead = LookAhead(judge, options, task.seed, deadline)
+            search = replace(search, final=ahead.outcomes, final_cost=ahead.cost)
+        best = search.run(ranked)
         if best is not None:
             poses = best.poses[np.newaxis]
             if np.isnan(poses).any():  # judged in other worlds; what is expected is told for the one seen

@@ -34,14 +34,15 @@ class Objective:
     gaps: FloatArray
     outlines: FloatArray
 
-    def scores(self, objects: IntArray, paths: FloatArray) -> FloatArray:
-        """(m,) values if blocks were discs and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
+    def scores(self, objects: IntArray, directions: FloatArray, paths: FloatArray) -> FloatArray:
+        """(m,) values of pushes if blocks were discs and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
         scores = np.empty(len(objects))
         scene = self.scene
         disc_scores(
             scene.centroids,
             self.gaps,
             objects,
+            directions,
             paths,
             scene.scale,
             self.width,

@@ -20,6 +20,7 @@ class Options:
         rollouts: simulated pushes at most. Unlike the budget, it gives the same push on every machine.
         clearance_width: gap that is wide enough [m]; 0: 0.4 mean bounding radii.
         worlds: in how many sampled worlds (poses, friction, density) the best pushes are judged; 1: in the one seen.
+        look_ahead: how many pushes ahead the best ones are judged by what can be reached; 1: greedy.
     """
 
     objective: Literal["singulation_distance", "clearance"] = "singulation_distance"
@@ -27,9 +28,14 @@ class Options:
     rollouts: int = 160
     clearance_width: float = field(default=0.0, metadata={"low": 0.0})
     worlds: int = 1
+    look_ahead: int = 1
 
     def __post_init__(self) -> None:
         for name in ("budget", "clearance_width"):
             value = getattr(self, name)
             if not (0.0 <= value < float("inf")):
                 raise InvalidInputError(f"rollout_push: {name} {value}, need a finite number >= 0")
+        if self.worlds > 1 and self.look_ahead > 1:
+            raise InvalidInputError(
+                f"rollout_push: worlds {self.worlds} with look_ahead {self.look_ahead}, need 1 for one of them"
+            )

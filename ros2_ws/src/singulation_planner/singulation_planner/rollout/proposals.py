@@ -82,7 +82,8 @@ def _on_lines(placer: Placer, objects: IntArray, angles: FloatArray, lines: Floa
 
 
 def _scores(placer: Placer, objective: Objective, proposals: Proposals) -> FloatArray:
-    return objective.scores(proposals.candidates.objects, _paths(placer, proposals))
+    one = proposals.candidates
+    return objective.scores(one.objects, one.directions, _paths(placer, proposals))
 
 
 def _paths(placer: Placer, proposals: Proposals) -> FloatArray:

@@ -15,7 +15,7 @@ _SCREENED, _REFINED = 64, 32  # simulated in turn: the next ones by score, varia
 _BATCH, _BLOCKS = 8, 96  # simulations between two looks at the clock: at least, and times the number of blocks
 _REFINEMENTS = 4  # portions of the variations
 _NARROWER = 0.7  # shrinks the variations from batch to batch
-_FINALISTS = 16  # of those screened so far, judged in all worlds
+_FINALISTS = 16  # of those screened so far, judged again
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +30,24 @@ class Best:
 
 @dataclass(slots=True)
 class Search:
-    """See the module. Ends after ``limit`` simulations or at ``deadline`` (processor time of this thread [s])."""
+    """See the module.
+
+    Attributes:
+        placer, judge: of the scene.
+        limit: number of simulations.
+        random: for the variations.
+        deadline: processor time of this thread [s].
+        final: a more careful way to judge the best pushes; the answer is then the best of those. None: the judge's.
+        final_cost: simulations that this takes for one push.
+    """
 
     placer: Placer
     judge: Judge
     limit: int
     random: np.random.Generator
     deadline: float
+    final: Callable[[Proposals], Outcomes] | None = None
+    final_cost: int = 1
     done: int = 0
     best: Best | None = None
     nominal: Best | None = None
@@ -44,7 +55,7 @@ class Search:
 
     def run(self, ranked: Proposals) -> Best | None:
         """Work through the sequence; None if nothing could be simulated."""
-        sequence = self._sequence(ranked) if self.judge.count == 1 else self._robust_sequence(ranked)
+        sequence = self._sequence(ranked) if self.final is None else self._sequence_with_finals(ranked)
         for batch, attempt, cost in sequence:
             left = (self.limit - self.done) // cost
             if left <= 0 or (self.done > 0 and time.thread_time() >= self.deadline):
@@ -66,17 +77,17 @@ class Search:
                     around, count = self.nominal.proposal.candidates, _REFINED // _REFINEMENTS
                     yield variations(self.placer, around, _NARROWER**step, count, self.random), self._screen, 1
 
-    def _robust_sequence(self, ranked: Proposals) -> Iterator[tuple[Proposals, Callable[[Proposals], None], int]]:
-        """The same for choices that must hold in all worlds: screen in the one seen, then judge the best in all."""
+    def _sequence_with_finals(self, ranked: Proposals) -> Iterator[tuple[Proposals, Callable[[Proposals], None], int]]:
+        """The same where the best of those screened are judged again."""
         yield ranked.part(slice(1)), self._screen, 1
-        yield ranked.part(slice(1)), self._judge, self.judge.count
+        yield ranked.part(slice(1)), self._judge, self.final_cost
         for at in range(1, len(ranked), _SCREENED):
             for batch in self._batches(ranked.part(slice(at, at + _SCREENED))):
                 yield batch, self._screen, 1
             self.screened.sort(key=lambda one: one[:2])
             finalists, self.screened = self.screened[:_FINALISTS], self.screened[_FINALISTS:]
             for _, _, proposal in finalists:
-                yield proposal, self._judge, self.judge.count
+                yield proposal, self._judge, self.final_cost
 
     def _batches(self, proposals: Proposals) -> Iterator[Proposals]:
         size = max(_BATCH, _BLOCKS // len(self.placer.scene))
@@ -86,14 +97,14 @@ class Search:
     def _screen(self, tried: Proposals) -> None:
         outcomes = self.judge.outcomes(tried)
         self.nominal = _better(self.nominal, tried, outcomes)
-        if self.judge.count > 1:
+        if self.final is not None:
             for k, value in enumerate(_comparable(outcomes.values).tolist()):
                 if np.isfinite(value):
                     self.screened.append((-value, self.done + k, tried.part(slice(k, k + 1))))
 
     def _judge(self, tried: Proposals) -> None:
-        outcomes = self.judge.in_all_worlds(tried)
-        self.best = _better(self.best, tried, outcomes)
+        if self.final is not None:
+            self.best = _better(self.best, tried, self.final(tried))
 
 
 def _comparable(values: FloatArray) -> FloatArray:

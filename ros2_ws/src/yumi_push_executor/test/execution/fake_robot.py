@@ -87,11 +87,13 @@ class FakeArm:
             self.started, trajectory = self.pending.pop(0)
             self.trajectory = self._from_here(trajectory)
         if self.trajectory is not None:
-            self.reference = self.trajectory.sample(now - self.started)[0][0]
+            elapsed, plan = now - self.started, self.trajectory
+            self.reference = plan.end if elapsed >= plan.duration else plan.sample(elapsed)[0][0]
         self.references.append(self.reference)
-        self.pulled = self.pulled + np.clip(self.pull - self.pulled, -0.6 * CYCLE, 0.6 * CYCLE)
+        if not np.array_equal(self.pull, self.pulled):
+            self.pulled = self.pulled + np.clip(self.pull - self.pulled, -0.6 * CYCLE, 0.6 * CYCLE)
         wanted = (self.reference + self.pulled - self.q) / max(self.lag, CYCLE)
-        self.v = np.where(self.stuck, 0.0, np.clip(wanted, -self.fastest, self.fastest))
+        self.v = np.where(self.stuck, 0.0, np.minimum(np.maximum(wanted, -self.fastest), self.fastest))
         self.q = self.q + self.v * CYCLE
 
     def _from_here(self, trajectory):

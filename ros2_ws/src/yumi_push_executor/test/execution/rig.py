@@ -69,7 +69,7 @@ class Rig:
         for name, arm in self.arms.items():
             arm.cycle(self.now, self.enabled)
             reach = self.jaw_speed * CYCLE
-            self.openings[name] += float(np.clip(self.wanted[name] - self.openings[name], -reach, reach))
+            self.openings[name] += min(max(self.wanted[name] - self.openings[name], -reach), reach)
         if self.driver_talks:
             self.driver = DriverStatus(self.mode, self.enabled, dict(self.calibrated), self.message, self.instant())
         sample = self.corrupt(self.measured())

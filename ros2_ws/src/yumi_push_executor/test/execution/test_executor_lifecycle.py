@@ -67,6 +67,17 @@ def test_a_deactivated_node_stops_its_push_refuses_others_and_comes_back(cell):
     require_good_push(cell)
 
 
+def test_a_node_that_is_shut_down_stops_its_push_first(cell):
+    """What SIGINT and SIGTERM do to a node that runs."""
+    cell.executor.planner.duration = 2.0
+    answer = cell.send().get_result_async()  # asked for while there is somebody to ask
+    cell.reach(Phase.PUSH)
+    assert change(cell, Transition.TRANSITION_ACTIVE_SHUTDOWN)
+    assert cell.stands()
+    wait_until(answer.done, what="result")
+    assert (answer.result().status, answer.result().result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.HALTED)
+
+
 def test_a_push_goes_on_without_its_client_and_the_next_client_is_served(cell):
     lonely = Node("lonely", context=cell.client.context)
     cell.client.executor.add_node(lonely)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fake_robot import HOME, push_segments
+from fake_robot import CYCLE, HOME, push_segments
 from rig import Rig
 
 from singulation_core import ResultCode
@@ -126,6 +126,21 @@ def test_cancelled_without_seen_standstill_is_not_called_cancelled(rig):
 
     outcome = rig.run(events=[(Phase.PUSH, 0.5, run_away)])
     assert (outcome.code, outcome.standing) == (ResultCode.TIMEOUT, False)
+    rig.require_good_push()
+
+
+@pytest.mark.parametrize("phase", PHASES[1:])
+def test_an_executor_that_dies_leaves_the_arm_at_rest_at_the_end_of_its_segment(rig, phase):
+    """Nobody steps the supervision any more: every segment ends at rest, and the next one is never ordered."""
+    supervisor = rig.supervisor()
+    rig.obey(supervisor.start(rig.driver, rig.instant()))
+    while rig.steps[-1].phase is not phase:
+        rig.obey(supervisor.step(rig.cycle(), rig.driver, rig.instant()))
+    segment = next(one for one in push_segments() if one.phase is phase)
+    for _ in range(round((segment.trajectory.duration + 0.5) / CYCLE)):
+        rig.cycle()
+    np.testing.assert_allclose(rig.arms["left"].q, segment.trajectory.end, atol=rig.limits.goal_tolerance)
+    assert np.abs(rig.arms["left"].v).max() < rig.limits.stopped_speed
     rig.require_good_push()
 
 

@@ -1,0 +1,107 @@
+"""Rollout Push against Brute Force: gain against time, with noise, choosing the contact mode, pushes to separation.
+
+scripts/bench rollout [--seeds 10] [--noise-seeds 1] [--separation 50] [--fast] [--only PART ...] [--out DIR]
+
+A run that was stopped goes on where it was. Processor time of one core. Brute Force takes most of it.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from benchmarks.rollout.judges import JUDGES
+from benchmarks.rollout.planners import BRUTE_FORCE, FAST_BRUTE_FORCE, MODES, NOMINAL, ROBUST, Planner
+from benchmarks.rollout.plans import Store, recipes
+from benchmarks.rollout.report import frontier, share_table
+from benchmarks.rollout.separation import LIMITS, WAYS, separation_report
+
+from singulation_planner import warm_up
+from singulation_planner.benchmark.evaluate import SceneRecipe
+
+_CLEAN = {"pymunk": "fine pymunk", "box2d": "Box2D"}
+
+
+def nominal(options: argparse.Namespace) -> str:
+    """Gain against time."""
+    store, scenes = Store(options.out), recipes(options.seeds)
+    _complete(options, store, scenes, NOMINAL, _CLEAN)
+    frontier(store, scenes, NOMINAL, options.out / "rollout_frontier.png", options.reference)
+    table = share_table(store, scenes, NOMINAL, _CLEAN, options.reference)
+    return table + "\n![Gain against time](rollout_frontier.png)\n"
+
+
+def noise(options: argparse.Namespace) -> str:
+    """With noise of perception and friction."""
+    store, scenes = Store(options.out), recipes(options.noise_seeds)
+    columns = {"noise": "12 worlds with noise"}
+    _complete(options, store, scenes, ROBUST, columns)
+    return share_table(store, scenes, ROBUST, columns, options.reference)
+
+
+def modes(options: argparse.Namespace) -> str:
+    """Choosing the contact mode too."""
+    store, scenes = Store(options.out), recipes(options.noise_seeds)
+    _complete(options, store, scenes, MODES, _CLEAN)
+    return share_table(store, scenes, MODES, _CLEAN, options.reference)
+
+
+def separation(options: argparse.Namespace) -> str:
+    """Pushes until every gap is wider than 0.4 bounding radii."""
+    return separation_report(options.out, options.separation, list(LIMITS), WAYS)
+
+
+def _complete(
+    options: argparse.Namespace,
+    store: Store,
+    scenes: Sequence[SceneRecipe],
+    planners: Sequence[Planner],
+    judges: Mapping[str, str],
+) -> None:
+    if options.tables_only:
+        return
+    wanted = [one for one in planners if one.policy != "brute_force"]
+    store.complete(scenes, [*wanted, options.reference], {name: JUDGES[name] for name in judges})
+
+
+PARTS: dict[str, tuple[str, Callable[[argparse.Namespace], str]]] = {
+    "nominal": ("Gain against time", nominal),
+    "noise": ("With noise: poses 0.05 bounding radii and 0.05 rad, friction 0.1 (standard deviations)", noise),
+    "modes": ("Choosing the contact mode too", modes),
+    "separation": ("Pushes until all gaps are wider than 0.4 bounding radii", separation),
+}
+
+
+def main() -> int:
+    """Run the parts and gather them in ``rollout.md``."""
+    options = _options()
+    warm_up()
+    texts = [f"# Rollout Push benchmark\n\nCommand: `scripts/bench rollout {' '.join(sys.argv[1:])}`\n"]
+    for name in options.only:
+        title, part = PARTS[name]
+        print(f"== {title}", file=sys.stderr)
+        texts.append(f"## {title}\n\n{part(options)}")
+    (options.out / "rollout.md").write_text("\n".join(texts), encoding="utf-8")
+    print("\n".join(texts))
+    return 0
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="scripts/bench rollout", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    add = parser.add_argument
+    add("--seeds", type=int, default=10, help="52 scenes each for gain against time (default: %(default)s)")
+    add("--noise-seeds", type=int, default=1, help="the same for noise and contact modes (default: %(default)s)")
+    add("--separation", type=int, default=50, help="scenes for each number of blocks (default: %(default)s)")
+    add("--only", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART", help=", ".join(PARTS))
+    add("--out", type=Path, default=Path("bench_results/rollout"))
+    add("--fast", action="store_true", help="compare with Brute Force in the compiled simulator, a tenth of the work")
+    add("--tables-only", action="store_true", help="plan nothing, make the tables of what is there")
+    options = parser.parse_args()
+    options.reference = FAST_BRUTE_FORCE if options.fast else BRUTE_FORCE
+    return options
+
+
+if __name__ == "__main__":
+    sys.exit(main())
