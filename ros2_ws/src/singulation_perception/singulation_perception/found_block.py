@@ -66,6 +66,8 @@ def deepest(planes: FloatArray, first: NDArray[np.int64], begin: int, end: int, 
         inside = np.inf
         for k in range(first[one], first[one + 1]):
             inside = min(inside, planes[k, 0] * x + planes[k, 1] * y - planes[k, 2])
+            if inside <= depth:
+                break
         if inside > depth:
             best, depth = one, inside
     return best
@@ -81,7 +83,7 @@ def _shares(
         for column in range(point.shape[1]):
             i = point[row, column]
             if i >= 0:
-                one = deepest(planes, first, 0, len(counts), np.float64(xyz[i, 0]), np.float64(xyz[i, 1]))
+                one = deepest(planes, first, np.int64(0), len(counts), np.float64(xyz[i, 0]), np.float64(xyz[i, 1]))
                 counts[one] += 1
                 heights[one] += xyz[i, 2]
     return counts, heights

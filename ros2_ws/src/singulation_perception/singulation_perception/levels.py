@@ -47,6 +47,7 @@ def levels_of(
     order, begin = _runs_by_surface(surface, len(sizes))
     width = band / _BINS
     histogram = np.zeros(int(highest / width) + 2, dtype=np.int32)
+    per_width = 1.0 / width
     first = np.zeros(len(sizes) + 1, dtype=np.int32)
     levels = np.empty((_MOST * len(sizes) + 1, 2), dtype=np.float64)
     count = 0
@@ -57,7 +58,7 @@ def levels_of(
             for k in range(begin[one], begin[one + 1]):
                 run = order[k]
                 for i in range(runs[run, FIRST], runs[run, FIRST] + runs[run, STOP] - runs[run, START]):
-                    histogram[int(xyz[i, 2] / width)] += 1
+                    histogram[int(xyz[i, 2] * per_width)] += 1
             found = levels[count : count + _MOST]
             count += _limits(found, _peaks(histogram, width, min_size, found), band, apart)
         first[one + 1] = count

@@ -6,28 +6,29 @@ import numpy as np
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import corners_of, refitted
 from singulation_perception.jit import compiled, compiled_part
-from singulation_perception.rings import Scale, hull_indices
+from singulation_perception.object_points import IntArray
+from singulation_perception.rings import Scale
 
 _ROUNDS = 4
 _SETTLED = 1e-6  # [m] corners that move less are where they belong
 _MARGIN = 2.0  # pitches from a corner in which points may belong to the other edge
 
 
-def outline_of(ring: FloatArray, tolerance: float, scale: Scale) -> FloatArray | None:
+def outline_of(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) -> FloatArray | None:
     """Convex polygon of a face.
 
     Args:
         ring: (m, 2) rim of the face, counter-clockwise [m].
+        hull: numbers of its points that are corners of its hull, counter-clockwise.
         tolerance: of Douglas-Peucker; no finer detail is kept [m].
         scale: of the cloud.
 
     Returns:
         (k, 2), counter-clockwise; None if the points have no area.
     """
-    hull = ring[hull_indices(ring)]
     if len(hull) < 3:
         return None
-    polygon = simplified(hull, tolerance)
+    polygon = simplified(ring[hull], tolerance)
     if len(polygon) < 3:
         return None
     corners, good = _fitted(ring, polygon, tolerance, scale)

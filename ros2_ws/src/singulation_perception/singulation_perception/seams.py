@@ -126,7 +126,7 @@ def candidates(
     for k in range(count):
         turn[k] = lines[k - 1, 0] * lines[k, 1] - lines[k - 1, 1] * lines[k, 0]
     found = np.empty((count * count + 2 * count, 6))
-    size = 0
+    size, none = 0, np.int64(-1)
     for k in range(count):
         if turn[k] >= _REFLEX:
             continue
@@ -143,13 +143,13 @@ def candidates(
                 reach = _distance(ring, np.int64(index[k]), hit)
                 penalty = bend * min(sine, 0.3) if turn[end] < _REFLEX else corner_end
             aligned = end >= 0 and turn[end] < _REFLEX and sine < _ALIGNED
-            _write(found, size, np.int64(index[k]), hit, reach, penalty, edge, other if aligned else -1)
+            _write(found, np.int64(size), np.int64(index[k]), hit, reach, penalty, edge, other if aligned else none)
             size += 1
         for other in range(k + 1, count):
             across = _distance(ring, np.int64(index[k]), np.int64(index[other]))
             apart = _apart(np.int64(index[k]), np.int64(index[other]), len(ring))
             if turn[other] < _REFLEX and across < _NECK * pitch and apart > _NEAR:
-                _write(found, size, np.int64(index[k]), np.int64(index[other]), across, neck, -1, -1)
+                _write(found, np.int64(size), np.int64(index[k]), np.int64(index[other]), across, neck, none, none)
                 size += 1
     return found[:size]
 
