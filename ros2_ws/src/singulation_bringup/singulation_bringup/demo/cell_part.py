@@ -165,6 +165,7 @@ class CellPart:
         distances = (message.singulation_distance_before, message.singulation_distance_after)
         gaps = (smallest_gap(before), smallest_gap(after))
         if number == 1:
+            self._film.name_blocks(before)
             summary.singulation_distance.append(distances[0])
             summary.smallest_gap.append(gaps[0])
         summary.singulation_distance.append(distances[1])
