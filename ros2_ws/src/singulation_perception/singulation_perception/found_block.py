@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray, area_centroid, bounding_radius, inward_half_planes
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.object_points import IntArray
 
 
@@ -58,7 +58,7 @@ def shares(point: IntArray, xyz: NDArray[np.float32], outlines: list[FloatArray]
     return counts, heights / np.maximum(counts, 1)
 
 
-@compiled_part
+@compiled_plain
 def deepest(planes: FloatArray, first: NDArray[np.int64], begin: int, end: int, x: float, y: float) -> int:
     """Which of the outlines ``begin`` to ``end`` a place is deepest inside, or nearest to if it is in none."""
     best, depth = begin, -np.inf

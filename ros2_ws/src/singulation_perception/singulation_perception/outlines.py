@@ -5,7 +5,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import corners_of, refitted
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale
 
@@ -62,7 +62,7 @@ def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scal
     return grown, good and len(grown) >= 3
 
 
-@compiled_part
+@compiled_plain
 def _same(one: FloatArray, two: FloatArray) -> bool:
     if len(one) != len(two):
         return False
@@ -72,7 +72,7 @@ def _same(one: FloatArray, two: FloatArray) -> bool:
     return True
 
 
-@compiled_part
+@compiled_plain
 def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
     """Whether every edge runs along its line in the right sense, so that the corners form a convex polygon."""
     for i in range(len(corners)):
@@ -102,7 +102,7 @@ def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
     return lines[:count]
 
 
-@compiled_part
+@compiled_plain
 def _cut_off(lines: FloatArray, count: int, k: int) -> float:
     """How far outside line k of ``count`` its neighbours would meet without it; infinite if they would not."""
     i, j = k - 1 if k > 0 else count - 1, k + 1 if k + 1 < count else 0
