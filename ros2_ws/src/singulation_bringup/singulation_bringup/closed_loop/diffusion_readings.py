@@ -30,18 +30,20 @@ _TEXT = """## ClusterPush ahead of Cluster Diffusion under other readings of Clu
 
 The paper says that Cluster Diffusion "aims to push one object away from the center of the clutter towards free space",
 and neither which center nor which of several objects with free space in front. Single-point pushes, planned with the
-blocks' true poses and simulated with the friction of each set, without camera and robot: {sets} sets.
+blocks' true poses and simulated with the friction of each set, without camera and robot: {sets} sets;
+travel after contact {travel:g} mean bounding radii.
 """
 
 
-def compare_readings(sets: int, out: Path) -> str:
+def compare_readings(sets: int, travel: float, out: Path) -> str:
     """Write ``diffusion_readings.md``; its text.
 
     Args:
         sets: of each configuration of Table III.
+        travel: of a push after contact [mean bounding radii].
         out: folder.
     """
-    setting = CellSetting()
+    setting = CellSetting(push_distance_factor=travel)
     cases = [(one, seed) for seed in range(sets) for one in CONFIGURATIONS]
     scenes = [random_scene(one.kind, one.blocks, seed, setting.geometry) for one, seed in cases]
     groups = {
@@ -55,7 +57,7 @@ def compare_readings(sets: int, out: Path) -> str:
         theirs = _gains(scenes, cases, setting, _THEIRS, options)
         found = [share(ours[chosen], theirs[chosen]) for chosen in groups.values()]
         rows.append([name, *(f"{100 * (one.value - 1.0):+.1f} ± {100 * one.error:.1f} %" for one in found)])
-    text = _TEXT.format(sets=len(cases)) + "\n" + table(["Cluster Diffusion", *groups], rows)
+    text = _TEXT.format(sets=len(cases), travel=travel) + "\n" + table(["Cluster Diffusion", *groups], rows)
     out.mkdir(parents=True, exist_ok=True)
     (out / "diffusion_readings.md").write_text(text)
     return text
@@ -73,7 +75,13 @@ def _gains(
     for scene, (_, seed) in zip(scenes, cases, strict=True):
         unit = float(scene.bounding_radii.mean())
         try:
-            push = plan_push(scene, policy, workspace=setting.geometry.workspace_polygon, **options)
+            push = plan_push(
+                scene,
+                policy,
+                push_distance_factor=setting.push_distance_factor,
+                workspace=setting.geometry.workspace_polygon,
+                **options,
+            )
             after = simulate_push(scene, push, setting.table_physics(seed))
         except SingulationError:
             after = scene
