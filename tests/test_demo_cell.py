@@ -25,6 +25,9 @@ def test_blocks_are_taken_apart(demo, mode):
             assert np.asarray(picture.convert("L")).std() > 10
     with Image.open(started.out / "run.gif") as film:
         assert film.n_frames > 10
+    assert f"<h2>{len(pushes)} push" in (started.out / "index.html").read_text()
+    assert summary["stages"]["push"]["count"] >= len(pushes)
+    assert summary["stages"]["look"]["seconds"] > 0.0
     topics = {topic.name: topic.count for topic in bag_topics(started.out / "run")}
     assert topics["/outcomes"] == len(pushes)
     assert topics["/points"] >= len(pushes) + 1

@@ -9,7 +9,7 @@ from singulation_core.push_world import PushPhysics
 _NO_LIMIT = 10**9
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Planner:
     """A policy with options.
 

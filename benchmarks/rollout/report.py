@@ -89,7 +89,7 @@ def frontier(
         for one in planners
         if known and all((scene.key, one.name, judge) in store.gains for scene in known)
     }
-    curve = np.array(sorted(point for one, point in points.items() if one.policy == "rollout_push"))
+    curve = np.array(sorted(points[one] for one in planners if one in points and one.policy == "rollout_push"))
     figure, axes = plt.subplots(figsize=(7.5, 4.5), layout="constrained")
     if len(curve):
         axes.errorbar(curve[:, 0], curve[:, 1], yerr=curve[:, 2], marker="o", capsize=2, label="Rollout Push")
@@ -99,7 +99,9 @@ def frontier(
     axes.axhline(100.0, color="0.7", linewidth=0.8, zorder=0)
     axes.set(xscale="log", xlabel="processor time for a plan [ms], median")
     axes.set_ylabel(f"mean gain s' - s [% of {reference.text}]", fontsize=9)
-    axes.set_title(f"{len(known)} scenes of 3 to 15 blocks, judged in fine pymunk", fontsize=10)
+    counts = [one.n for one in known]
+    title = f"{len(known)} scenes of {min(counts, default=0)} to {max(counts, default=0)} blocks, judged in fine pymunk"
+    axes.set_title(title, fontsize=10)
     axes.legend(loc="lower right", fontsize=9)
     axes.grid(alpha=0.3)
     figure.savefig(path, dpi=120)

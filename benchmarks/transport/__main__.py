@@ -40,7 +40,9 @@ class Row:
     p95: float
     largest: float
     first: float
+    fastest: float
     sender_processor: float
+    receiver_processor: float
 
 
 def main() -> int:
@@ -77,7 +79,8 @@ def _row(scene: Scene, settings: str, receiver: str, repeats: int) -> Row:
         arguments = _parameters(scene) if receiver == PERCEPTION else []
         receiving = _start("processes", environment, settings, receiver, *arguments)
         try:
-            sending = _start("sender", environment, settings, str(path), str(repeats), output=subprocess.PIPE)
+            words = (settings, str(path), str(repeats), str(receiving.pid))
+            sending = _start("sender", environment, *words, output=subprocess.PIPE)
             seen = json.loads(sending.communicate(timeout=_LIMIT)[0])
         finally:
             _stop(receiving)
@@ -95,7 +98,9 @@ def _row(scene: Scene, settings: str, receiver: str, repeats: int) -> Row:
         float(np.percentile(later, 95)),
         float(later.max()),
         float(times[0]),
+        float(later.min()),
         seen["processor"],
+        seen["receiver"],
     )
 
 
@@ -127,15 +132,14 @@ def _parameters(scene: Scene) -> list[str]:
 
 
 def _markdown(rows: list[Row]) -> str:
-    names = (
-        "points | MB | settings of both processes | receiver | answered | objects | median ms | p95 | largest | first"
-    )
-    lines = [f"| {names} | sender processor ms |", "|---" * 11 + "|"]
+    columns = ["points", "MB", "settings of both processes", "receiver", "answered", "objects", "median ms", "p95"]
+    columns += ["largest", "first", "fastest", "sender processor ms", "receiver processor ms"]
+    lines = ["| " + " | ".join(columns) + " |", "|---" * len(columns) + "|"]
     for row in rows:
         lines.append(
             f"| {row.points} | {row.megabytes:.1f} | {row.settings} | {row.receiver} | {row.answered} of {row.sent} "
             f"| {row.objects} | {row.median:.1f} | {row.p95:.1f} | {row.largest:.1f} | {row.first:.1f} "
-            f"| {row.sender_processor:.1f} |"
+            f"| {row.fastest:.1f} | {row.sender_processor:.1f} | {row.receiver_processor:.1f} |"
         )
     return "\n".join(lines) + "\n"
 

@@ -1,6 +1,6 @@
 """The camera's process: publishes one cloud again and again, waits for each answer, prints what it saw as JSON.
 
-``python -m benchmarks.transport.sender SETTINGS CLOUD.npy REPEATS``
+``python -m benchmarks.transport.sender SETTINGS CLOUD.npy REPEATS RECEIVER_PROCESS``
 """
 
 import json
@@ -9,6 +9,7 @@ import time
 from typing import Any
 
 import numpy as np
+import psutil
 import rclpy
 from benchmarks.transport.processes import apply
 from rclpy.node import Node
@@ -48,14 +49,14 @@ class Sender(Node):
         return True
 
 
-def measure(node: Sender, cloud: Any, repeats: int) -> dict[str, Any]:
-    """Milliseconds from publishing to the answer, for each cloud that was answered."""
+def measure(node: Sender, cloud: Any, repeats: int, receiver: psutil.Process) -> dict[str, Any]:
+    """Milliseconds from publishing to the answer, for each cloud that was answered; processor time for each cloud."""
     if not node.wait(lambda: node.points.get_subscription_count() > 0 and node.count_publishers("objects"), _START):
         raise SystemExit("no receiver")
     node.wait(lambda: False, 1.0)
     times: list[float] = []
     objects = 0
-    began = time.process_time()
+    began, received = time.process_time(), sum(receiver.cpu_times()[:2])
     for _ in range(repeats):
         stamp = time.time_ns()
         cloud.header.stamp.sec, cloud.header.stamp.nanosec = divmod(stamp, 10**9)
@@ -64,17 +65,22 @@ def measure(node: Sender, cloud: Any, repeats: int) -> dict[str, Any]:
             times.append((node.answers[stamp][0] - stamp) * 1e-6)
             objects = node.answers[stamp][1]
         node.wait(lambda: False, _PAUSE)
-    return {"times": times, "objects": objects, "processor": (time.process_time() - began) / repeats * 1e3}
+    return {
+        "times": times,
+        "objects": objects,
+        "processor": (time.process_time() - began) / repeats * 1e3,
+        "receiver": (sum(receiver.cpu_times()[:2]) - received) / repeats * 1e3,
+    }
 
 
 def main() -> int:
     """Run the sender."""
-    settings, path, repeats = sys.argv[1:4]
+    settings, path, repeats, receiver = sys.argv[1:5]
     apply(settings)
     rclpy.init()
     node = Sender()
     cloud = cloud_to_msg(np.load(path), Header(frame_id="phoxi_camera_sensor"))
-    print(json.dumps(measure(node, cloud, int(repeats))))
+    print(json.dumps(measure(node, cloud, int(repeats), psutil.Process(int(receiver)))))
     node.destroy_node()
     rclpy.try_shutdown()
     return 0

@@ -64,6 +64,8 @@ class RosCell:
         node.create_subscription(ArrangementMsg, "objects", self._on_objects, STATE, callback_group=group)
         self._planner = node.create_client(PlanPush, "plan_push", callback_group=group)
         self._camera = node.create_client(Trigger, trigger, callback_group=group) if trigger else None
+        self._clear_view = node.create_client(Trigger, "clear_view", callback_group=group)
+        self._arms_in_view = True  # for all that is known
         self._executor = ActionClient(node, ExecutePush, "execute_push", callback_group=group)
 
     def destroy(self) -> None:
@@ -76,11 +78,12 @@ class RosCell:
         Raises:
             SingulationError: ``NOT_READY``, naming what is missing.
         """
-        self._cancel_requested = cancel_requested
+        self._cancel_requested, self._arms_in_view = cancel_requested, True
         self._fresh_from = self._node.get_clock().now()
         waiting = [
             ("service plan_push", self._planner.wait_for_service),
             ("action execute_push", self._executor.wait_for_server),
+            ("service clear_view", self._clear_view.wait_for_service),
         ]
         if self._camera is not None:
             waiting.append(("camera trigger " + self._camera.srv_name, self._camera.wait_for_service))
@@ -94,11 +97,13 @@ class RosCell:
             raise SingulationError(ResultCode.CANCELLED, "cancelled by the client")
 
     def look(self) -> Arrangement:
-        """A view stamped after the last motion.
+        """A view stamped after the last motion, with the arms out of it.
 
         Raises:
-            SingulationError: ``NO_FRESH_VIEW`` or ``CANCELLED``.
+            SingulationError: ``NO_FRESH_VIEW`` or ``CANCELLED``; ``NOT_READY`` if the arms cannot leave the view.
         """
+        if self._arms_in_view:
+            self._leave_view()
         message = self._fresh_view()
         seen = conversions.arrangement_from_msg(message)
         self._headers = {id(seen): message}
@@ -129,8 +134,10 @@ class RosCell:
         """
         message = next(iter(self._headers.values()))
         goal = ExecutePush.Goal(push=conversions.push_to_msg(push, message.header))
+        self._arms_in_view = True
         try:
             self._see_through(self._accepted(goal))
+            self._arms_in_view = False  # a push that was done ends beside the view
         finally:
             self._fresh_from = self._node.get_clock().now()
 
@@ -143,6 +150,15 @@ class RosCell:
     def get_logger(self) -> Any:
         """Logger of the node, for ``guarded``."""
         return self._node.get_logger()
+
+    def _leave_view(self) -> None:
+        answer = self._await(self._clear_view.call_async(Trigger.Request()), self._timeouts.execute, "clear_view")
+        self._fresh_from = self._node.get_clock().now()
+        if not answer.success:
+            raise SingulationError(
+                ResultCode.NOT_READY, f"the arms could not leave the camera's view: {answer.message}"
+            )
+        self._arms_in_view = False
 
     def _fresh_view(self) -> Any:
         """Trigger and wait; clouds travel best effort, and one that is lost is asked for again."""

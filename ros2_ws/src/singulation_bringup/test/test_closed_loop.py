@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from singulation_bringup.closed_loop import CellSetting, LibraryCell
+from singulation_bringup.closed_loop.diffusion_readings import compare_readings
 from singulation_bringup.closed_loop.endurance import Endurance, Sample, run_cycles
 from singulation_bringup.closed_loop.main import main
 from singulation_bringup.closed_loop.sets import COUNTS, one_push_trials, separate_trials
@@ -130,6 +131,13 @@ def test_every_push_of_a_long_run_is_accounted_for():
 def test_growth_is_the_slope_after_warming_up():
     samples = tuple(Sample(10 * k, 500.0 + max(0, 3 - k) * -50.0 + 0.1 * k, 4, 20) for k in range(20))
     assert Endurance(samples, Counter(), 0, 0, 0).growth == pytest.approx(1.0)
+
+
+def test_readings_of_cluster_diffusion_are_compared_without_a_robot(tmp_path):
+    text = compare_readings(1, 2.0, tmp_path)
+    assert "8 sets;\ntravel after contact 2 mean bounding radii" in text
+    assert text.count(" %") == 3 * 4
+    assert (tmp_path / "diffusion_readings.md").read_text() == text
 
 
 def test_wrong_usage_says_what_would_be_right(capsys):

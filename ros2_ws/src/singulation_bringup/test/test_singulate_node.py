@@ -8,6 +8,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from singulation_msgs.action import ExecutePush, Singulate
@@ -35,9 +36,11 @@ class ScriptedCell(Node):
         self.stood_still, self.pushing = threading.Event(), threading.Event()
         self.lost_clouds, self.triggers, self.cancel_code = 0, 0, ResultCode.CANCELLED
         self.asked = []
+        self.stale, self.cleared, self.blocked = False, 0, False
         group = ReentrantCallbackGroup()
         self.objects = self.create_publisher(ArrangementMsg, "objects", STATE)
         self.create_service(Trigger, "trigger_frame", self.trigger, callback_group=group)
+        self.create_service(Trigger, "clear_view", self.clear_view, callback_group=group)
         self.create_service(PlanPush, "plan_push", self.plan, callback_group=group)
         self.server = ActionServer(
             self,
@@ -51,9 +54,15 @@ class ScriptedCell(Node):
     def trigger(self, request, response):
         blocks = [PlanarObject(7 * i, SQUARE + (i * (0.04 + self.gap), 0.0)) for i in range(2)]
         self.triggers += 1
+        stamp = (self.get_clock().now() - Duration(seconds=5.0 * self.stale)).to_msg()
         if not self.blind and self.triggers > self.lost_clouds:
-            self.objects.publish(conversions.arrangement_to_msg(Arrangement(blocks), self.get_clock().now().to_msg()))
+            self.objects.publish(conversions.arrangement_to_msg(Arrangement(blocks), stamp))
         response.success = True
+        return response
+
+    def clear_view(self, request, response):
+        self.cleared += 1
+        response.success, response.message = not self.blocked, "UNREACHABLE: scripted"
         return response
 
     def plan(self, request, response):
@@ -145,6 +154,33 @@ def test_a_cloud_that_got_lost_is_asked_for_again(setting, ask):
     result = expect_success(ask)
     assert len(result.outcomes) == 2
     assert setting[1].triggers == 5  # three for the first look, one after each push
+
+
+def test_a_view_from_before_the_last_motion_is_not_taken(setting, ask):
+    setting[1].stale = True
+    status, result = outcome(ask())
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.NO_FRESH_VIEW)
+    setting[1].stale = False
+    expect_success(ask)
+
+
+def test_the_arms_leave_the_view_at_the_start_and_after_a_push_that_failed(setting, ask):
+    expect_success(ask)
+    assert setting[1].cleared == 1
+    setting[1].gap, setting[1].code = 0.001, ResultCode.COLLISION_STOP
+    assert outcome(ask())[1].code == ResultCode.PUSH_FAILED
+    assert setting[1].cleared == 1 + 1 + 2  # at the start, and after each of two failures
+    setting[1].code = ResultCode.OK
+    expect_success(ask)
+
+
+def test_arms_that_cannot_leave_the_view_are_no_view(setting, ask):
+    setting[1].blocked = True
+    status, result = outcome(ask())
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.NOT_READY)
+    assert "UNREACHABLE: scripted" in result.message
+    setting[1].blocked = False
+    expect_success(ask)
 
 
 def test_a_goal_without_a_gap_takes_the_parameters(setting, ask):

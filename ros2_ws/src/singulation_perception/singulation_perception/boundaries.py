@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray
 from singulation_perception.surfaces import Faces
 
@@ -94,7 +94,7 @@ def _followed(point: IntArray, first: NDArray[np.int64], box: IntArray) -> tuple
     return rim, begin
 
 
-@compiled_part
+@compiled_plain
 def _follow(point: IntArray, start: int, width: int, rim: NDArray[np.int64]) -> int:
     """Moore tracing from the first pixel of the first row until it is entered the same way again (Jacob's rule)."""
     at, way, first_way, count = start, 6, -1, 0  # came from above

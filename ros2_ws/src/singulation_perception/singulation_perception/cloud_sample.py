@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from singulation_core import ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
@@ -16,7 +17,7 @@ _METRES_LIMIT = 30.0  # [m] no sensor of this kind reaches farther
 _EVERYWHERE = (-np.inf, np.inf, -np.inf, np.inf)
 
 Workspace = tuple[float, float, float, float]
-Window = tuple[int, int, int, int]
+IntArray = NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +26,12 @@ class CloudSample:
 
     Args:
         located: (m, 3) in the given frame [m].
-        window: rows and columns of the cloud that hold the workspace: first row, row after the last, first column,
-            column after the last.
+        columns: (H, 2) first column and column after the last that may hold the workspace, in each row of the cloud.
         distance: mean distance of the points to the camera [m].
     """
 
     located: FloatArray
-    window: Window
+    columns: IntArray
     distance: float
 
 
@@ -50,7 +50,7 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
     row_step = max(1, int(np.sqrt(height * width / _POINTS))) if height > 1 else 1
     column_step = max(1, int(height * width / row_step / _POINTS))
     limits = np.array(workspace or _EVERYWHERE)
-    located, box, valid, inside, everywhere = _pick(cloud, row_step, column_step, np.array(frame[:3]), limits)
+    located, spans, valid, inside, everywhere = _pick(cloud, row_step, column_step, np.array(frame[:3]), limits)
     looked_at = -(-height // row_step) * -(-width // column_step)
     if valid < min(_FEWEST, looked_at):
         raise SingulationError(
@@ -64,26 +64,32 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
             ResultCode.NOT_METRES,
             f"mean distance {distance:.0f}: the cloud looks like millimetres; clouds are in metres, divide by 1000",
         )
-    window = (*_widened(box[:2], 2 * row_step, height), *_widened(box[2:], 2 * column_step, width))
-    return CloudSample(located, window, distance)
+    return CloudSample(located, _columns(spans, row_step, 3 * column_step, height, width), distance)
 
 
-def _widened(limits: tuple[int, int], margin: int, size: int) -> tuple[int, int]:
-    return max(0, limits[0] - margin), min(size, limits[1] + margin + 1)
+def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: int) -> IntArray:
+    """Limits for every row from those of the sampled rows beside it, widened by ``margin``."""
+    beside = np.pad(spans, ((1, 1), (0, 0)), mode="edge")
+    first = np.minimum(np.minimum(beside[:-2, 0], beside[1:-1, 0]), beside[2:, 0]) - margin
+    stop = np.maximum(np.maximum(beside[:-2, 1], beside[1:-1, 1]), beside[2:, 1]) + margin
+    first = first.clip(0, width)
+    stop = np.maximum(first, stop.clip(0, width))
+    return np.column_stack((first, stop)).astype(np.int32).repeat(row_step, axis=0)[:height]
 
 
 @compiled
 def _pick(
     cloud: Raster, row_step: int, column_step: int, frame: FloatArray, limits: FloatArray
-) -> tuple[FloatArray, tuple[int, int, int, int], int, float, float]:
-    """Points inside the limits, rows and columns that hold them, how many are valid anywhere, and the sums of the
-    distances of both to the camera.
+) -> tuple[FloatArray, IntArray, int, float, float]:
+    """Points inside the limits; first column and column after the last of them in each sampled row; how many points
+    are valid anywhere; the sums of the distances of both to the camera.
     """
     numbers = cloud.numbers
     located = np.empty(((cloud.height // row_step + 1) * (cloud.width // column_step + 1), 3))
-    top, bottom, left, right = cloud.height, -1, cloud.width, -1
+    spans = np.empty((-(-cloud.height // row_step), 2), dtype=np.int32)
     count, valid, inside, everywhere = 0, 0, 0.0, 0.0
     for row in range(0, cloud.height, row_step):
+        left, right = cloud.width, 0
         for column in range(0, cloud.width, column_step):
             at = row * cloud.row_step + column * cloud.point_step
             a, b, c = np.float64(numbers[at]), np.float64(numbers[at + 1]), np.float64(numbers[at + 2])
@@ -99,6 +105,6 @@ def _pick(
                 located[count, 2] = a * frame[2, 0] + b * frame[2, 1] + c * frame[2, 2] + frame[2, 3]
                 count += 1
                 inside += distance
-                top, bottom = min(top, row), max(bottom, row)
-                left, right = min(left, column), max(right, column)
-    return located[:count], (top, bottom, left, right), valid, inside, everywhere
+                left, right = min(left, column), column + 1
+        spans[row // row_step, 0], spans[row // row_step, 1] = left, right
+    return located[:count], spans, valid, inside, everywhere

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from singulation_core import InvalidInputError
-from singulation_perception.grid_columns import columns_of, link_cells
+from singulation_perception.grid_columns import bounds, columns_of, link_cells
 
 IntArray = NDArray[np.int32]
 
@@ -39,20 +39,28 @@ def euclidean_clusters(points: ArrayLike, tolerance: float, min_size: int = 1, m
         raise InvalidInputError(f"tolerance: {tolerance} m, need a finite positive length")
     if not (1 <= min_size <= max_size):
         raise InvalidInputError(f"min_size, max_size: {min_size}, {max_size}; need 1 <= min <= max")
-    finite = np.isfinite(cloud).all(axis=1)
-    if finite.all():
-        return _ranked(_components(cloud, tolerance), min_size, max_size)
+    components, kept = _components(cloud, tolerance)
+    if kept is None:
+        return _ranked(components, min_size, max_size)
     labels = np.full(len(cloud), -1, dtype=np.int32)
-    labels[finite] = _ranked(_components(cloud[finite], tolerance), min_size, max_size)
+    labels[kept] = _ranked(components, min_size, max_size)
     return labels
 
 
-def _components(cloud: NDArray[np.float32], tolerance: float) -> IntArray:
-    """Component number of every point."""
+def _components(cloud: NDArray[np.float32], tolerance: float) -> tuple[IntArray, NDArray[np.bool_] | None]:
+    """Component number of every finite point, and which points are finite, None if all are."""
     if not len(cloud):
-        return np.empty(0, dtype=np.int32)
-    columns = columns_of(cloud, tolerance)
-    return np.asarray(link_cells(*columns, np.float32(tolerance * tolerance)))
+        return np.empty(0, dtype=np.int32), None
+    kept = None
+    low, high, finite = bounds(cloud)
+    if not finite:
+        kept = np.isfinite(cloud).all(axis=1)
+        cloud = cloud[kept]
+        if not len(cloud):
+            return np.empty(0, dtype=np.int32), kept
+        low, high, _ = bounds(cloud)
+    columns = columns_of(cloud, tolerance, low, high)
+    return np.asarray(link_cells(*columns, np.float32(tolerance * tolerance))), kept
 
 
 def _ranked(components: IntArray, min_size: int, max_size: int) -> IntArray:

@@ -14,7 +14,9 @@ from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
 
 _FEWEST = 8  # missing points of a groove
-_TRIALS = 400  # lines through two of them
+_PAIRS = np.random.default_rng(3).random(
+    (400, 2)
+)  # lines through two of them that are tried, as shares of their number
 _WIDTH = 0.8  # pitches on either side of a line within which points belong to it
 _SHARE = 0.22  # of the places on a line that are missing, from which it is looked at more closely
 _UNEVEN = 1.3  # a face of two heights scatters that much more than others
@@ -25,10 +27,10 @@ def groove_line(image: FaceImage, pitch: float) -> FloatArray | None:
     holes = _holes(image.point)
     if len(holes) < _FEWEST:
         return None
-    places = np.column_stack((holes, np.ones(len(holes)))) @ to_table(image).T
-    random = np.random.default_rng(3)
-    pairs = random.integers(0, len(places), (_TRIALS, 2))
-    line, count, extent = _best_line(np.ascontiguousarray(places), pairs, _WIDTH * pitch)
+    turn = to_table(image)
+    places = holes @ turn[:, :2].T + turn[:, 2]
+    pairs = (_PAIRS * len(places)).astype(np.int64)
+    line, count, extent = _best_line(places, pairs, _WIDTH * pitch)
     if count < max(_FEWEST, _SHARE * extent / pitch):
         return None
     return line

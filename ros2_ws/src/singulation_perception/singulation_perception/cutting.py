@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale, concave_area, hull_indices, least_width, ring_area
 
@@ -174,7 +174,7 @@ def _corner_piece(ring: FloatArray, index: IntArray, first: int, last: int) -> F
     return part[: count + 1]
 
 
-@compiled_part
+@compiled_plain
 def _corner_pockets(part: FloatArray, hull: IntArray, roughness: float) -> float:
     """As ``concave_area``, for a polygon of few corners."""
     total = 0.0

@@ -13,10 +13,10 @@ from singulation_perception.face_image import face_image
 from singulation_perception.face_rings import FaceRings
 from singulation_perception.found_block import FoundBlock, shares
 from singulation_perception.hidden import View, without_hidden
-from singulation_perception.object_points import ObjectPoints
+from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.outlines import outline_of
 from singulation_perception.parameters import SegmentationParameters
-from singulation_perception.rings import Scale
+from singulation_perception.rings import Scale, hull_indices
 from singulation_perception.splitting import CONVEX, Split, Suspects, split, split_seen
 from singulation_perception.surfaces import Faces
 
@@ -62,7 +62,10 @@ class FaceBlocks:
         """Blocks of face k; none if its rim gives no polygon."""
         scale = self.scale(k)
         tolerance = self.parameters.outline_tolerance or max(_TOLERANCE_IN_PITCHES * scale.pitch, scale.roughness)
-        found = [(ring, lead, outline_of(ring, tolerance, scale)) for ring, lead in self._rings(k, scale, suspects)]
+        found = [
+            (ring, lead, outline_of(ring, self._hull(k, ring), tolerance, scale))
+            for ring, lead in self._rings(k, scale, suspects)
+        ]
         good = [(ring, lead, outline) for ring, lead, outline in found if outline is not None]
         counts, heights = self._shares(k, [outline for _, _, outline in good])
         surface = int(self.faces.surface[self.maps.faces[k]])
@@ -86,9 +89,16 @@ class FaceBlocks:
         image = face_image(self.maps.image(k), self.maps.box[k, :2], self.seen.xyz, ring, pixels)
         height = float(self.faces.height[self.maps.faces[k]])
         for part in split_seen(ring, scale, image, suspects) if looking else (ring,):
+            if part is ring and not concave:
+                yield ring, np.inf
+                continue
             whole = without_hidden(part, image.pixels(part), scale.roughness, self.view, height)
             result = split(whole, scale, image, self.noise) if cutting else Split(0.0, (whole,))
             yield from ((piece, _lead(piece, result, scale)) for piece in result.pieces)
+
+    def _hull(self, k: int, ring: FloatArray) -> IntArray:
+        """Corners of the hull of a ring; that of the face itself is known."""
+        return self.rings.hull(k) if ring.base is self.rings.points else np.asarray(hull_indices(ring))
 
     def _shares(self, k: int, outlines: list[FloatArray]) -> tuple[list[int], list[float]]:
         face = self.maps.faces[k]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray, area_centroid, bounding_radius, inward_half_planes
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.object_points import IntArray
 
 
@@ -58,7 +58,7 @@ def shares(point: IntArray, xyz: NDArray[np.float32], outlines: list[FloatArray]
     return counts, heights / np.maximum(counts, 1)
 
 
-@compiled_part
+@compiled_plain
 def deepest(planes: FloatArray, first: NDArray[np.int64], begin: int, end: int, x: float, y: float) -> int:
     """Which of the outlines ``begin`` to ``end`` a place is deepest inside, or nearest to if it is in none."""
     best, depth = begin, -np.inf
@@ -66,6 +66,8 @@ def deepest(planes: FloatArray, first: NDArray[np.int64], begin: int, end: int, 
         inside = np.inf
         for k in range(first[one], first[one + 1]):
             inside = min(inside, planes[k, 0] * x + planes[k, 1] * y - planes[k, 2])
+            if inside <= depth:
+                break
         if inside > depth:
             best, depth = one, inside
     return best
@@ -81,7 +83,7 @@ def _shares(
         for column in range(point.shape[1]):
             i = point[row, column]
             if i >= 0:
-                one = deepest(planes, first, 0, len(counts), np.float64(xyz[i, 0]), np.float64(xyz[i, 1]))
+                one = deepest(planes, first, np.int64(0), len(counts), np.float64(xyz[i, 0]), np.float64(xyz[i, 1]))
                 counts[one] += 1
                 heights[one] += xyz[i, 2]
     return counts, heights

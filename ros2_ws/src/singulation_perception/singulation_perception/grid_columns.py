@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core import InvalidInputError
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.union_find import find_root, numbered_roots, single_sets, unite
 
 IntArray = NDArray[np.int32]
@@ -23,12 +23,14 @@ _LATER = np.array(
 Columns = tuple[Cloud, IntArray, IntArray, IntArray, IntArray]
 
 
-def columns_of(cloud: Cloud, tolerance: float) -> Columns:
+def columns_of(cloud: Cloud, tolerance: float, low: NDArray[np.float64], high: NDArray[np.float64]) -> Columns:
     """Points sorted into columns of cells.
 
     Args:
         cloud: (n, 3) finite points, n > 0.
         tolerance: of the clustering [m].
+        low: (3,) least coordinates.
+        high: (3,) greatest coordinates.
 
     Returns:
         points in column order (n, 3), their z cells (n,), their places in ``cloud`` (n,), first point of each of the
@@ -38,7 +40,6 @@ def columns_of(cloud: Cloud, tolerance: float) -> Columns:
         InvalidInputError: the tolerance is so small that cells cannot be numbered.
     """
     edge = _EDGE * tolerance
-    low, high = (limit(axis=0).astype(np.float64) for limit in (cloud.min, cloud.max))
     counts = np.floor((high - low) / edge) + 1 + 2 * _PAD
     if not (counts.max() < 2**30):
         raise InvalidInputError(f"tolerance: {tolerance} m is too small for a cloud {(high - low).max():.3g} m wide")
@@ -112,20 +113,38 @@ def _sought_neighbours(kept: NDArray[np.int64], offsets: NDArray[np.int64]) -> I
 
 
 @compiled
+def bounds(cloud: Cloud) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
+    """Least and greatest coordinates, (3,) each, and whether all are finite."""
+    low, high = np.empty(3), np.empty(3)
+    finite = True
+    for axis in range(3):
+        least, greatest, wrong = cloud[0, axis], cloud[0, axis], 0
+        for i in range(len(cloud)):
+            value = cloud[i, axis]
+            least = value if value < least else least
+            greatest = value if value > greatest else greatest
+            wrong += not (abs(value) < np.inf)
+        low[axis], high[axis] = least, greatest
+        finite = finite and wrong == 0
+    return low, high, finite
+
+
+@compiled
 def _in_order(cloud: Cloud, key: IntArray, depth: IntArray, starts: IntArray) -> tuple[Cloud, IntArray, IntArray]:
     """Points sorted by column and, within a column, by z cell."""
-    following = starts[:-1].copy()
-    points = np.empty_like(cloud)
-    cells = np.empty_like(depth)
-    places = np.empty_like(depth)
+    following = starts.copy()
+    cells, places = np.empty(len(cloud), dtype=np.int32), np.empty(len(cloud), dtype=np.int32)
     for i in range(len(cloud)):
-        at = following[key[i]]
-        following[key[i]] += 1
-        while at > starts[key[i]] and cells[at - 1] > depth[i]:
+        column, cell = key[i], depth[i]
+        at = following[column]
+        following[column] += 1
+        while at > starts[column] and cells[at - 1] > cell:
             cells[at], places[at] = cells[at - 1], places[at - 1]
-            points[at, 0], points[at, 1], points[at, 2] = points[at - 1, 0], points[at - 1, 1], points[at - 1, 2]
             at -= 1
-        cells[at], places[at] = depth[i], i
+        cells[at], places[at] = cell, i
+    points = np.empty((len(cloud), 3), dtype=np.float32)
+    for at in range(len(cloud)):
+        i = places[at]
         points[at, 0], points[at, 1], points[at, 2] = cloud[i, 0], cloud[i, 1], cloud[i, 2]
     return points, cells, places
 
@@ -140,16 +159,18 @@ def link_cells(
         points, depth, places, starts, neighbours: from ``columns_of``.
         squared: square of the tolerance, exclusive [m^2].
     """
-    cell, first, cell_of_column = _cells(depth, starts)
-    parent = single_sets(len(first) - 1)
+    cell, first, level, cell_of_column = _cells(depth, starts)
+    parent = single_sets(len(level))
     for column in range(len(starts) - 1):
         for a in range(np.int64(cell_of_column[column]), np.int64(cell_of_column[column + 1])):
-            _link_within(points, depth, first, a, a + 1, np.int64(cell_of_column[column + 1]), parent, squared)
+            root = find_root(parent, a)
+            end = np.int64(cell_of_column[column + 1])
+            root = _link_within(points, level, first, a, root, a + 1, end, parent, squared)
             for j in range(neighbours.shape[1]):
                 other = neighbours[column, j]
                 if other >= 0:
                     begin, end = np.int64(cell_of_column[other]), np.int64(cell_of_column[other + 1])
-                    _link_within(points, depth, first, a, begin, end, parent, squared)
+                    root = _link_within(points, level, first, a, root, begin, end, parent, squared)
     numbers, _ = numbered_roots(parent)
     components = np.empty(len(points), dtype=np.int32)
     for i in range(len(points)):
@@ -158,9 +179,9 @@ def link_cells(
 
 
 @compiled_part
-def _cells(depth: IntArray, starts: IntArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Cell of every point, first point of every cell, first cell of every column."""
-    cell = np.empty(len(depth), dtype=np.int32)
+def _cells(depth: IntArray, starts: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray]:
+    """Cell of every point, first point of every cell, its place in z, first cell of every column."""
+    cell, level = np.empty(len(depth), dtype=np.int32), np.empty(len(depth), dtype=np.int32)
     first = np.empty(len(depth) + 1, dtype=np.int32)
     cell_of_column = np.empty(len(starts), dtype=np.int32)
     count = 0
@@ -168,35 +189,39 @@ def _cells(depth: IntArray, starts: IntArray) -> tuple[IntArray, IntArray, IntAr
         cell_of_column[column] = count
         for i in range(starts[column], starts[column + 1]):
             if i == starts[column] or depth[i] != depth[i - 1]:
-                first[count] = i
+                first[count], level[count] = i, depth[i]
                 count += 1
             cell[i] = count - 1
     cell_of_column[len(starts) - 1] = count
     first[count] = len(depth)
-    return cell, first[: count + 1], cell_of_column
+    return cell, first, level[:count], cell_of_column
 
 
-@compiled_part
+@compiled_plain
 def _link_within(
     points: Cloud,
-    depth: IntArray,
+    level: IntArray,
     first: IntArray,
     a: int,
+    root: int,
     begin: int,
     end: int,
     parent: IntArray,
     squared: np.float32,
-) -> None:
-    """Unites cell ``a`` with the cells of one column that it touches."""
-    level = depth[first[a]]
+) -> int:
+    """Unites cell ``a``, whose root is given, with the cells of one column that it touches; its root then."""
     for b in range(begin, end):
-        apart = depth[first[b]] - level
-        near = -_PAD <= apart <= _PAD and find_root(parent, a) != find_root(parent, b)
-        if near and _touch(points, first[a], first[a + 1], first[b], first[b + 1], squared):
-            unite(parent, a, b)
+        apart = level[b] - level[a]
+        if parent[b] == root or apart < -_PAD or apart > _PAD:
+            continue
+        other = find_root(parent, b)
+        if other != root and _touch(points, first[a], first[a + 1], first[b], first[b + 1], squared):
+            unite(parent, root, other)
+            root = min(root, other)
+    return root
 
 
-@compiled_part
+@compiled_plain
 def _touch(points: Cloud, a: int, a_end: int, b: int, b_end: int, squared: np.float32) -> bool:
     for i in range(a, a_end):
         for j in range(b, b_end):

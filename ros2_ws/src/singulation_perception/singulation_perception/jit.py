@@ -26,3 +26,15 @@ def compiled_sums(function: Callable[..., Any]) -> Any:
 def compiled_part(function: Callable[..., Any]) -> Any:
     """Compile a function that only compiled functions call; kept on disk as part of them."""
     return njit(**_USUAL, no_cpython_wrapper=True)(function)
+
+
+def compiled_plain(function: Callable[..., Any]) -> Any:
+    """As ``compiled_part``, for a function that makes no array and returns numbers or nothing.
+
+    It needs no reference counts, which cost more than a short function does. A Numba that does not know the option
+    compiles the same, only slower.
+    """
+    try:
+        return njit(**_USUAL, no_cpython_wrapper=True, _nrt=False)(function)
+    except (KeyError, TypeError):
+        return compiled_part(function)

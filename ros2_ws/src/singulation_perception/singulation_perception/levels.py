@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import FIRST, START, STOP, IntArray
 
 Points = NDArray[np.float32]
@@ -47,6 +47,7 @@ def levels_of(
     order, begin = _runs_by_surface(surface, len(sizes))
     width = band / _BINS
     histogram = np.zeros(int(highest / width) + 2, dtype=np.int32)
+    per_width = 1.0 / width
     first = np.zeros(len(sizes) + 1, dtype=np.int32)
     levels = np.empty((_MOST * len(sizes) + 1, 2), dtype=np.float64)
     count = 0
@@ -57,7 +58,7 @@ def levels_of(
             for k in range(begin[one], begin[one + 1]):
                 run = order[k]
                 for i in range(runs[run, FIRST], runs[run, FIRST] + runs[run, STOP] - runs[run, START]):
-                    histogram[int(xyz[i, 2] / width)] += 1
+                    histogram[int(xyz[i, 2] * per_width)] += 1
             found = levels[count : count + _MOST]
             count += _limits(found, _peaks(histogram, width, min_size, found), band, apart)
         first[one + 1] = count
@@ -106,7 +107,7 @@ def _peaks(histogram: IntArray, width: float, min_size: int, levels: NDArray[np.
     return count
 
 
-@compiled_part
+@compiled_plain
 def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) -> int:
     """Turns heights into limits: sorted, near ones joined, half way between others that would overlap."""
     if count == 0:
@@ -134,7 +135,7 @@ def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) 
     return kept
 
 
-@compiled_part
+@compiled_plain
 def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
     """Most points in a window, those near earlier peaks left out, and the first bin of that window."""
     best, low, window = 0, 0, 0
@@ -148,7 +149,7 @@ def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
     return best, low
 
 
-@compiled_part
+@compiled_plain
 def _sum(histogram: IntArray, low: int, high: int) -> int:
     total = 0
     for i in range(max(0, low), min(len(histogram), high)):
@@ -156,7 +157,7 @@ def _sum(histogram: IntArray, low: int, high: int) -> int:
     return total
 
 
-@compiled_part
+@compiled_plain
 def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float) -> float:
     total, weighted = 0, 0.0
     for i in range(max(0, low), min(len(histogram), high)):
@@ -165,7 +166,7 @@ def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float
     return weighted * width / total
 
 
-@compiled_part
+@compiled_plain
 def level_at(levels: NDArray[np.float64], begin: int, end: int, height: float) -> int:
     """The level that a height belongs to, -1 if there is none."""
     for level in range(begin, end):

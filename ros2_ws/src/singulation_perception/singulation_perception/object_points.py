@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.cloud_sample import Window, Workspace
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.cloud_sample import Workspace
+from singulation_perception.jit import compiled_sums
 from singulation_perception.raster import Raster
 
 IntArray = NDArray[np.int32]
@@ -41,7 +41,7 @@ def object_points(
     cloud: Raster,
     table_from_camera: FloatArray,
     workspace: Workspace | None,
-    window: Window,
+    columns: IntArray,
     lowest: float,
     step: float,
 ) -> ObjectPoints:
@@ -51,26 +51,26 @@ def object_points(
         cloud: camera frame [m].
         table_from_camera: 4x4 of the fitted table.
         workspace: limits in ``table``, or None.
-        window: part of the image that is looked at.
+        columns: (H, 2) first column and column after the last to look at, in each row.
         lowest: height from which a point belongs to an object [m].
         step: height difference at which a run ends [m].
     """
     limits = np.array(workspace or (-np.inf, np.inf, -np.inf, np.inf), dtype=np.float32)
     pose = table_from_camera[:3].astype(np.float32)
-    rows, columns = window[1] - window[0], window[3] - window[2]
-    xyz = np.empty((rows * columns, 3), dtype=np.float32)  # untouched pages cost nothing
-    runs = np.empty((rows * (columns + 1) // 2 + rows, 4), dtype=np.int32)
+    size = int((columns[:, 1] - columns[:, 0]).sum())
+    xyz = np.empty((size, 3), dtype=np.float32)  # untouched pages cost nothing
+    runs = np.empty((size // 2 + len(columns), 4), dtype=np.int32)
     spans = np.empty((len(runs), 2), dtype=np.float32)
     count, run_count, outside = _collect(
-        cloud, window, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
+        cloud, columns, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
     )
     return ObjectPoints(xyz[:count], runs[:run_count], spans[:run_count], outside)
 
 
-@compiled
+@compiled_sums
 def _collect(
     cloud: Raster,
-    window: Window,
+    columns: IntArray,
     pose: NDArray[np.float32],
     limits: NDArray[np.float32],
     lowest: np.float32,
@@ -79,21 +79,21 @@ def _collect(
     runs: IntArray,
     spans: NDArray[np.float32],
 ) -> tuple[int, int, int]:
-    top, bottom, left, right = window
     numbers, point_step = cloud.numbers, np.uintp(cloud.point_step)
     # Numbers of their own: array elements would be read again after every point that is written.
     ax, bx, cx, dx = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
     ay, by, cy, dy = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
     x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
-    levels = np.empty(right - left, dtype=np.float32)
+    levels = np.empty(cloud.width, dtype=np.float32)
     count, run, outside = 0, -1, 0
     before, stop, low, high = lowest, 0, lowest, lowest
-    for row in range(top, bottom):
+    for row in range(cloud.height):
+        left, width = int(columns[row, 0]), int(columns[row, 1] - columns[row, 0])
         start = np.uintp(row * cloud.row_step + left * cloud.point_step)
-        _heights(numbers, start, point_step, pose, levels)
+        _heights(numbers, start, point_step, pose, levels, width)
         last = -2
-        for begin in range(0, len(levels), _BLOCK):
-            end = min(begin + _BLOCK, len(levels))
+        for begin in range(0, width, _BLOCK):
+            end = min(begin + _BLOCK, width)
             some = 0
             for column in range(begin, end):
                 some += levels[column] > lowest
@@ -126,22 +126,23 @@ def _collect(
     return count, run + 1, outside
 
 
-@compiled_part
+@compiled_sums
 def _heights(
     numbers: NDArray[np.float32],
     start: int,
     point_step: int,
     pose: NDArray[np.float32],
     levels: NDArray[np.float32],
+    width: int,
 ) -> None:
     """Heights of the points of one row; unsigned indices and a known step, because that makes vector instructions."""
     a, b, c, d = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
     one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
     if point_step == three:
-        for column in range(len(levels)):
+        for column in range(width):
             at = start + three * np.uintp(column)
             levels[column] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d
     else:
-        for column in range(len(levels)):
+        for column in range(width):
             at = start + point_step * np.uintp(column)
             levels[column] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d

@@ -5,29 +5,30 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import corners_of, refitted
-from singulation_perception.jit import compiled, compiled_part
-from singulation_perception.rings import Scale, hull_indices
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.object_points import IntArray
+from singulation_perception.rings import Scale
 
 _ROUNDS = 4
 _SETTLED = 1e-6  # [m] corners that move less are where they belong
 _MARGIN = 2.0  # pitches from a corner in which points may belong to the other edge
 
 
-def outline_of(ring: FloatArray, tolerance: float, scale: Scale) -> FloatArray | None:
+def outline_of(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) -> FloatArray | None:
     """Convex polygon of a face.
 
     Args:
         ring: (m, 2) rim of the face, counter-clockwise [m].
+        hull: numbers of its points that are corners of its hull, counter-clockwise.
         tolerance: of Douglas-Peucker; no finer detail is kept [m].
         scale: of the cloud.
 
     Returns:
         (k, 2), counter-clockwise; None if the points have no area.
     """
-    hull = ring[hull_indices(ring)]
     if len(hull) < 3:
         return None
-    polygon = simplified(hull, tolerance)
+    polygon = simplified(ring[hull], tolerance)
     if len(polygon) < 3:
         return None
     corners, good = _fitted(ring, polygon, tolerance, scale)
@@ -61,7 +62,7 @@ def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scal
     return grown, good and len(grown) >= 3
 
 
-@compiled_part
+@compiled_plain
 def _same(one: FloatArray, two: FloatArray) -> bool:
     if len(one) != len(two):
         return False
@@ -71,7 +72,7 @@ def _same(one: FloatArray, two: FloatArray) -> bool:
     return True
 
 
-@compiled_part
+@compiled_plain
 def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
     """Whether every edge runs along its line in the right sense, so that the corners form a convex polygon."""
     for i in range(len(corners)):
@@ -101,7 +102,7 @@ def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
     return lines[:count]
 
 
-@compiled_part
+@compiled_plain
 def _cut_off(lines: FloatArray, count: int, k: int) -> float:
     """How far outside line k of ``count`` its neighbours would meet without it; infinite if they would not."""
     i, j = k - 1 if k > 0 else count - 1, k + 1 if k + 1 < count else 0

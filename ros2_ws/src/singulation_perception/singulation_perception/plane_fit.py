@@ -6,6 +6,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled, compiled_sums
 
 _SCORED = 2_000  # points that score a hypothesis
+_HOLDS = 0.5  # share of the points near a plane that no other can have
 _ROUNDS = 4
 _SETTLED = 0.02  # relative change of the noise that ends the fit
 
@@ -17,23 +18,23 @@ def best_plane(points: FloatArray, hypotheses: int, reach: float, first: FloatAr
         points: (m, 3) [m].
         hypotheses: how many to try.
         reach: distance that counts as near [m].
-        first: a plane (4,) that is tried, too.
+        first: a plane (4,) that is taken at once if more than half of the points lie near it.
 
     Returns:
         (4,) unit normal and offset, distance = normal . point + offset; None if the points lie on one line.
     """
     random = np.random.default_rng(7)  # equal clouds give equal planes
+    scored = np.ascontiguousarray(points[random.integers(0, len(points), _SCORED)].T)
+    if first is not None and np.count_nonzero(np.abs(first[:3] @ scored + first[3]) < reach) > _HOLDS * _SCORED:
+        return first
     corners = points[random.integers(0, len(points), (hypotheses, 3))]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     usable = lengths > 1e-12
     normals = normals[usable] / lengths[usable, None]
     planes = np.column_stack((normals, -(normals * corners[usable, 0]).sum(axis=1)))
-    if first is not None:
-        planes = np.vstack((first, planes))
     if not len(planes):
         return None
-    scored = np.ascontiguousarray(points[random.integers(0, len(points), _SCORED)].T)
     return np.asarray(planes[_best(planes, scored, reach)])
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 
 
@@ -32,7 +32,7 @@ class Scale(NamedTuple):
 _RANK = 4  # points that must lie that deep: less is a hole at the rim
 
 
-@compiled_part
+@compiled_plain
 def ring_area(ring: FloatArray) -> float:
     """Signed area [m^2], positive when counter-clockwise."""
     total = 0.0
@@ -89,14 +89,14 @@ def _sorted_by_place(ring: FloatArray) -> IntArray:
     return order
 
 
-@compiled_part
+@compiled_plain
 def _before(ring: FloatArray, a: int, b: int) -> bool:
     if ring[a, 0] != ring[b, 0]:
         return ring[a, 0] < ring[b, 0]
     return ring[a, 1] < ring[b, 1]
 
 
-@compiled_part
+@compiled_plain
 def _turn(ring: FloatArray, a: int, b: int, c: int) -> float:
     return (ring[b, 0] - ring[a, 0]) * (ring[c, 1] - ring[a, 1]) - (ring[b, 1] - ring[a, 1]) * (ring[c, 0] - ring[a, 0])
 
@@ -172,7 +172,7 @@ def _pocket(ring: FloatArray, first: int, last: int) -> tuple[float, float]:
     return 0.5 * abs(area), deepest[_RANK - 1]
 
 
-@compiled_part
+@compiled_plain
 def least_width(ring: FloatArray, hull: IntArray) -> float:
     """Distance of the closest pair of parallel lines that hold the ring [m]."""
     least = np.inf

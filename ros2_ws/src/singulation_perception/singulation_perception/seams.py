@@ -12,7 +12,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import fitted_line
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale
 
@@ -126,7 +126,7 @@ def candidates(
     for k in range(count):
         turn[k] = lines[k - 1, 0] * lines[k, 1] - lines[k - 1, 1] * lines[k, 0]
     found = np.empty((count * count + 2 * count, 6))
-    size = 0
+    size, none = 0, np.int64(-1)
     for k in range(count):
         if turn[k] >= _REFLEX:
             continue
@@ -143,18 +143,18 @@ def candidates(
                 reach = _distance(ring, np.int64(index[k]), hit)
                 penalty = bend * min(sine, 0.3) if turn[end] < _REFLEX else corner_end
             aligned = end >= 0 and turn[end] < _REFLEX and sine < _ALIGNED
-            _write(found, size, np.int64(index[k]), hit, reach, penalty, edge, other if aligned else -1)
+            _write(found, np.int64(size), np.int64(index[k]), hit, reach, penalty, edge, other if aligned else none)
             size += 1
         for other in range(k + 1, count):
             across = _distance(ring, np.int64(index[k]), np.int64(index[other]))
             apart = _apart(np.int64(index[k]), np.int64(index[other]), len(ring))
             if turn[other] < _REFLEX and across < _NECK * pitch and apart > _NEAR:
-                _write(found, size, np.int64(index[k]), np.int64(index[other]), across, neck, -1, -1)
+                _write(found, np.int64(size), np.int64(index[k]), np.int64(index[other]), across, neck, none, none)
                 size += 1
     return found[:size]
 
 
-@compiled_part
+@compiled_plain
 def _write(
     cuts: FloatArray, k: int, first: int, last: int, length: float, penalty: float, edge: int, other: int
 ) -> None:
@@ -162,18 +162,18 @@ def _write(
     cuts[k, 3], cuts[k, 4], cuts[k, 5] = penalty, edge, other
 
 
-@compiled_part
+@compiled_plain
 def _distance(ring: FloatArray, a: int, b: int) -> float:
     x, y = ring[a, 0] - ring[b, 0], ring[a, 1] - ring[b, 1]
     return math.sqrt(x * x + y * y)
 
 
-@compiled_part
+@compiled_plain
 def _apart(a: int, b: int, size: int) -> int:
     return min((a - b) % size, (b - a) % size)
 
 
-@compiled_part
+@compiled_plain
 def _cast(ring: FloatArray, start: int, lines: FloatArray, edge: int, sense: float, least: float) -> tuple[float, int]:
     """How far the line runs from a point of the ring until it meets the ring again, and the point it meets."""
     nx, ny, offset = lines[edge, 0], lines[edge, 1], lines[edge, 2]
@@ -194,7 +194,7 @@ def _cast(ring: FloatArray, start: int, lines: FloatArray, edge: int, sense: flo
     return best, hit
 
 
-@compiled_part
+@compiled_plain
 def _end(
     ring: FloatArray,
     index: IntArray,

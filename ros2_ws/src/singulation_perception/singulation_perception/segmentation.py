@@ -101,7 +101,7 @@ def segment_cloud(
     clock.lap("table")
     step = parameters.height_step or max(_STEP_IN_NOISE * table.noise, _LEAST_STEP)
     lowest = max(parameters.min_height, _LOWEST_IN_NOISE * table.noise)
-    seen = object_points(cloud, table.table_from_camera, parameters.workspace, table.window, lowest, step)
+    seen = object_points(cloud, table.table_from_camera, parameters.workspace, table.columns, lowest, step)
     clock.lap("points")
     flat = None
     if image.shape[0] == 1:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_part, compiled_sums
+from singulation_perception.jit import compiled, compiled_plain, compiled_sums
 from singulation_perception.levels import level_at, levels_of
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
 from singulation_perception.union_find import numbered_roots, single_sets, unite
@@ -112,7 +112,7 @@ def connected_runs(xyz: Points, runs: IntArray, kind: IntArray, step: float) -> 
     return numbered_roots(parent)
 
 
-@compiled_part
+@compiled_plain
 def _meet(xyz: Points, runs: IntArray, one: int, two: int, step: float) -> bool:
     """Whether two runs in neighbouring rows have neighbours that differ by at most ``step``."""
     begin, end = max(runs[one, START], runs[two, START]), min(runs[one, STOP], runs[two, STOP])

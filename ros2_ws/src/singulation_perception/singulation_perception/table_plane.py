@@ -7,7 +7,7 @@ import numpy as np
 from singulation_core import ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
 from singulation_core.transforms import inverse
-from singulation_perception.cloud_sample import CloudSample, Window, sample
+from singulation_perception.cloud_sample import CloudSample, IntArray, sample
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.plane_fit import best_plane, plane_spread, refined_plane
 from singulation_perception.raster import Raster
@@ -28,7 +28,7 @@ class TablePlane:
         share: of the sampled points inside the workspace that lie on the plane.
         offset: height of the fitted plane above the expected one at the middle of the workspace [m], 0 without one.
         tilt: angle between fitted and expected plane [rad], 0 without an expected one.
-        window: rows and columns of the cloud that hold the workspace.
+        columns: (H, 2) first column and column after the last that may hold the workspace, in each row of the cloud.
     """
 
     table_from_camera: FloatArray
@@ -36,7 +36,7 @@ class TablePlane:
     share: float
     offset: float
     tilt: float
-    window: Window
+    columns: IntArray
 
     @property
     def camera_plane(self) -> FloatArray:
@@ -54,7 +54,7 @@ def find_table(
     Args:
         cloud: camera frame [m].
         parameters: expected pose and limits.
-        previous: the table in the last cloud; tried too, so that equal scenes give equal planes.
+        previous: the table in the last cloud; where it still holds, no other is sought.
 
     Raises:
         SingulationError: NO_POINTS, NOT_METRES, NO_TABLE (no plane at all), WRONG_TABLE (a plane, but not the
@@ -75,9 +75,9 @@ def find_table(
     share = count / len(picked.located)
     _require_plane(share, noise, spread, parameters)
     if expected is None:
-        return TablePlane(_frame_from_plane(plane), noise, share, 0.0, 0.0, picked.window)
+        return TablePlane(_frame_from_plane(plane), noise, share, 0.0, 0.0, picked.columns)
     pose, offset, tilt = _near_expected(plane, parameters, expected)
-    return TablePlane(pose, noise, share, offset, tilt, picked.window)
+    return TablePlane(pose, noise, share, offset, tilt, picked.columns)
 
 
 def _free_reach(picked: CloudSample) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage
-from singulation_perception.jit import compiled, compiled_part
+from singulation_perception.jit import compiled, compiled_plain
 
 _ENDS = 4.0  # pitches at either end of the seam, where its corners disturb
 _NEAR, _FAR = 3.5, 7.5  # pitches from the seam at which heights are compared
@@ -80,7 +80,7 @@ def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: 
     return missing, level[0] - level[1], math.sqrt(error)
 
 
-@compiled_part
+@compiled_plain
 def _height(image: FaceImage, x: float, y: float) -> float:
     """Height at a place of the table, relative to a point of the face [m]; NaN without a point."""
     map_ = image.to_pixel

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled_part
+from singulation_perception.jit import compiled_part, compiled_plain
 
 IntArray = NDArray[np.int32]
 
@@ -17,7 +17,7 @@ def single_sets(count: int) -> IntArray:
     return parent
 
 
-@compiled_part
+@compiled_plain
 def find_root(parent: IntArray, item: int) -> int:
     """Root of ``item``; halves the path on the way."""
     while parent[item] != item:
@@ -26,7 +26,7 @@ def find_root(parent: IntArray, item: int) -> int:
     return item
 
 
-@compiled_part
+@compiled_plain
 def unite(parent: IntArray, first: int, second: int) -> None:
     """Joins two sets; the smaller root stays, so that numbers follow the order of the items."""
     a, b = find_root(parent, np.int64(first)), find_root(parent, np.int64(second))

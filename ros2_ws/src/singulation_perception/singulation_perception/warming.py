@@ -26,7 +26,7 @@ def _every_kind_of_block() -> NDArray[np.float32]:
     depth = np.full(x.shape, 0.5)
     depth[10:40, 10:40] = depth[20:60, 40:70] = 0.47
     depth[10:50, 85:115] = 0.47
-    depth[10:50, 99:101:2] = np.nan
+    depth[10:50:2, 100] = depth[11:50:4, 100] = np.nan
     depth[70:90, 20:80], depth[90:110, 20:80] = 0.47, 0.4695
     depth[75:105, 82:110] = 0.485
     depth += 1e-4 * np.sin(97.0 * np.arange(x.size).reshape(x.shape))

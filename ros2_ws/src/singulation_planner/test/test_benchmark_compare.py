@@ -10,6 +10,7 @@ import pytest
 from singulation_core import ContactMode, Push, PusherGeometry
 from singulation_core.push_world import PushPhysics, simulate_pushes
 from singulation_planner.benchmark.compare import compare, comparison_table
+from singulation_planner.benchmark.rematch import rematch, rematch_table
 from singulation_planner.benchmark.scenario import read_scenarios
 
 AUTHORS_FILE = Path(__file__).parents[5] / "shared" / "data" / "authors_simulator.jsonl.gz"
@@ -57,6 +58,23 @@ def test_a_simulator_agrees_with_itself(made_here):
     assert rows["position_error"].max() < 1e-9
     assert np.abs(rows["theirs"]).max() > 0.1
     assert "| single_point | 6 | 0 | 1.000 |" in comparison_table(rows)
+
+
+def test_our_plans_stand_beside_those_of_the_authors_code(made_here, tmp_path):
+    record = json.loads(made_here.read_text())
+    push = record["policies"]["p0"]
+    record["policies"] = {"clusterPush2D": push, "boundaryShear": None, "min_overlap": push}
+    record["brute_force"] = {"before": 1.0, "after": 1.5}
+    path = tmp_path / "rematch.jsonl"
+    path.write_text(json.dumps(record))
+    rows = rematch(path)
+    assert rows["policy"].tolist() == ["min_overlap", "cluster_push"]
+    outcome = push["single_point"]
+    assert rows["theirs"].to_numpy() == pytest.approx(outcome["after"] - outcome["before"])
+    assert (rows["ours"] > 0.1).all()
+    assert "| ClusterPush | 1 | " in rematch_table(rows)
+    ours = rows["ours"].iloc[1]
+    assert f"| {200 * ours:.1f} ± 0.0 |" in rematch_table(rows)
 
 
 def test_a_start_inside_a_block_is_moved_back_until_it_is_free(made_here, tmp_path):

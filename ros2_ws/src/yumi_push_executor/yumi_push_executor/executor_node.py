@@ -9,6 +9,7 @@ Every goal is accepted and gets a result with a code; one that comes while anoth
 A goal whose client is gone is finished all the same. Nothing that was stopped goes on by itself.
 """
 
+import gc
 import sys
 import threading
 import time
@@ -114,6 +115,9 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         self.get_logger().info("warming up; the first time ever this compiles and takes some seconds")
         planner = self.make_planner()
         planner.warm_up()
+        # What is loaded by now stays: looking through it for garbage would stop every thread for a tenth of a second.
+        gc.collect()
+        gc.freeze()
         self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")
         return planner
 

@@ -18,7 +18,7 @@ from singulation_core import ContactMode
 from singulation_planner.benchmark.markdown import table
 
 _EVERY = 10  # cycles between two samples
-_SETTLED = 0.25  # share of the samples that belong to warming up
+_SETTLED = 0.25  # share of the samples that belong to warming up, beside the first one
 _PER_SET = 10  # pushes on one set at most
 
 
@@ -53,7 +53,7 @@ class Endurance:
     @property
     def growth(self) -> float:
         """Slope of the memory after warming up [MiB in 100 pushes]."""
-        kept = self.samples[int(_SETTLED * len(self.samples)) :]
+        kept = self.samples[1 + int(_SETTLED * len(self.samples)) :]
         if len(kept) < 2:
             return 0.0
         return float(100.0 * np.polyfit([one.pushes for one in kept], [one.memory for one in kept], 1)[0])

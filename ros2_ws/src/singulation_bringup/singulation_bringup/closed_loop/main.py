@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from singulation_bringup.closed_loop.diffusion_readings import compare_readings
 from singulation_bringup.closed_loop.endurance import endure
 from singulation_bringup.closed_loop.figure import picture_of_separation
 from singulation_bringup.closed_loop.readings import run_readings
@@ -67,6 +68,13 @@ def _parser() -> argparse.ArgumentParser:
     other.add_argument("--out", type=Path, default=_OUT / "readings", help="folder of the results")
     other.add_argument("--workers", type=_positive, default=os.cpu_count() or 1, help="processes (default: all cores)")
     other.set_defaults(command=lambda options: print(run_readings(options.sets, options.out, options.workers)))
+    alone = commands.add_parser("diffusion", help="ClusterPush against other readings of Cluster Diffusion")
+    alone.add_argument("--sets", type=_positive, default=5, help="of each configuration (default: %(default)s)")
+    alone.add_argument("--push-distance-factor", type=float, default=1.0, help="travel [bounding radii]")
+    alone.add_argument("--out", type=Path, default=_OUT, help="folder of the results (default: %(default)s)")
+    alone.set_defaults(
+        command=lambda options: print(compare_readings(options.sets, options.push_distance_factor, options.out))
+    )
     long = commands.add_parser("endurance", help="many cycles in a row: memory, threads, file handles")
     long.add_argument("--cycles", type=_positive, default=200, help="pushes (default: %(default)s)")
     long.add_argument("--out", type=Path, default=_OUT, help="folder of the results (default: %(default)s)")

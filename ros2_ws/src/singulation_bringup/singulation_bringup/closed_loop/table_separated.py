@@ -70,8 +70,16 @@ def _row(name: str, part: pd.DataFrame, counts: Sequence[int]) -> list[str]:
         share_of(part["real"]).percent() + " %",
         f"{pushes.value:.2f} ± {pushes.error:.2f}" if len(done) else "-",
         f"{100 * fallbacks:.1f} %",
-        *(f"{100 * one['done'].mean():.0f} %, {one.loc[one['done'], 'pushes'].mean():.1f}" for one in by_count),
+        *(_of_count(one) for one in by_count),
     ]
+
+
+def _of_count(part: pd.DataFrame) -> str:
+    """Share separated and mean pushes of one number of blocks."""
+    if part.empty:
+        return "-"
+    pushes = part.loc[part["done"], "pushes"]
+    return f"{100 * part['done'].mean():.0f} %" + (f", {pushes.mean():.1f}" if len(pushes) else "")
 
 
 def share_of(flags: "pd.Series[bool]") -> Estimate:

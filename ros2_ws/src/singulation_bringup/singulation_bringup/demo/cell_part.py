@@ -24,6 +24,7 @@ from singulation_node.qos import LATCHED
 from singulation_perception.bag_writing import BagRecorder
 
 _START = 600.0  # s; the first start on a machine compiles camera, segmentation, planner and clearance checks
+_LATE = 60.0  # s; a busy machine hands messages on late
 _PER_PUSH = 90.0  # s of wall time, far more than any push takes
 _RECORDED: tuple[tuple[str, Any], ...] = (
     ("points", PointCloud2),
@@ -138,9 +139,13 @@ class CellPart:
         observer.wait(lambda: self._show_outcomes() or result() is not None, limit, "singulate")
         answer = result()
         observer.wait(
-            lambda: self._show_outcomes() or len(self._summary.pushes) >= len(answer.outcomes), 10.0, "the last outcome"
+            lambda: self._show_outcomes() or len(self._summary.pushes) >= len(answer.outcomes),
+            _LATE,
+            "the last outcome",
         )
-        self._note_stages(observer.wait(lambda: observer.status("singulate_node: stages"), 10.0, "times of the stages"))
+        self._note_stages(
+            observer.wait(lambda: observer.status("singulate_node: stages"), _LATE, "times of the stages")
+        )
         return answer
 
     def _note_stages(self, status: dict[str, str]) -> None:
@@ -165,6 +170,7 @@ class CellPart:
         distances = (message.singulation_distance_before, message.singulation_distance_after)
         gaps = (smallest_gap(before), smallest_gap(after))
         if number == 1:
+            self._film.name_blocks(before)
             summary.singulation_distance.append(distances[0])
             summary.smallest_gap.append(gaps[0])
         summary.singulation_distance.append(distances[1])

@@ -50,6 +50,7 @@ class Film:
         self._tips: tuple[FloatArray, ...] = ()
         self._moments: list[_Moment] = []
         self._arms_seen = -1.0
+        self._names: dict[int, int] = {}
 
     def see_arms(self, message: Any) -> None:
         """A joint_states message: remember where the fingertips are."""
@@ -72,6 +73,12 @@ class Film:
         if not self._moments or now >= self._moments[-1].time + _PERIOD:
             self._moments.append(_Moment(now, conversions.arrangement_from_msg(message), self._tips))
 
+    def name_blocks(self, seen: Arrangement) -> None:
+        """Give the true blocks the ids, and so the colours, that the loop has seen them under before anything moved."""
+        for item in self._moments[0].blocks.objects if self._moments and len(seen) else ():
+            distances = np.hypot(*(seen.centroids - item.centroid).T)
+            self._names[item.id] = seen.objects[int(distances.argmin())].id
+
     def save(self, path: Path) -> bool:
         """Write a GIF; False if nothing was seen."""
         moments = self._moments[:: 1 + len(self._moments) // _MOST]
@@ -90,7 +97,7 @@ class Film:
         cv2.polylines(picture, [self._pixels(self._cell.workspace_polygon)], True, _LINE)
         for item in moment.blocks.objects:
             outline = self._pixels(item.outline)
-            cv2.fillPoly(picture, [outline], _BLOCKS + item.id % _COLOURS)
+            cv2.fillPoly(picture, [outline], _BLOCKS + self._names.get(item.id, item.id) % _COLOURS)
             cv2.polylines(picture, [outline], True, _INK)
         for tip in moment.tips:
             if tip[2] <= _NEAR:

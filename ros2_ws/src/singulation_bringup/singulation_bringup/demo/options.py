@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from singulation_bringup.policy_choice import DEFAULT_POLICY
 from singulation_core import ContactMode, InvalidInputError
 
 PARTS = ("all", "replay", "cell")
@@ -90,8 +89,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--contact-mode", choices=modes, default=modes[0], help="how to push (default: %(default)s)")
     parser.add_argument(
         "--policy",
-        default=DEFAULT_POLICY,
-        help="push policy, for example cluster_push, the paper's (default: %(default)s)",
+        default="cluster_push",
+        help="push policy; rollout_push needs fewer pushes (default: %(default)s, the paper's)",
     )
     parser.add_argument("--max-pushes", type=int, default=12, help="at most so many (default: %(default)s)")
     parser.add_argument(

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from singulation_bringup.run_page.markup import Markup, tag
 
 _WIDTH, _HEIGHT = 360, 200
-_LEFT, _RIGHT, _TOP, _BOTTOM = 44, 12, 12, 34
+_RIGHT, _TOP, _BOTTOM = 12, 12, 34
+_LETTER = 7.5  # width of a digit
 _TICKS = 4  # at most so many intervals on the axis of values
 
 
@@ -26,24 +27,25 @@ def curve(
     steps = _levels(min(known, default=0.0), max(known, default=1.0))
     low, high = steps[0], steps[-1]
     digits = max(len(f"{level:g}".partition(".")[2]) for level in steps)
+    left = 12 + _LETTER * max(len(f"{level:.{digits}f}") for level in steps)
 
     def x(push: float) -> float:
-        return round(_LEFT + push * (_WIDTH - _LEFT - _RIGHT) / max(len(values) - 1, 1), 1)
+        return round(left + push * (_WIDTH - left - _RIGHT) / max(len(values) - 1, 1), 1)
 
     def y(value: float) -> float:
         return round(_TOP + (high - value) / (high - low) * (_HEIGHT - _TOP - _BOTTOM), 1)
 
     parts = [tag("title", f"{title}. {description}")]
     for level in steps:
-        parts.append(tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y(level), y2=y(level), class_="grid"))
-        parts.append(tag("text", f"{level:.{digits}f}", x=_LEFT - 6, y=y(level) + 4, text_anchor="end"))
+        parts.append(tag("line", x1=left, x2=_WIDTH - _RIGHT, y1=y(level), y2=y(level), class_="grid"))
+        parts.append(tag("text", f"{level:.{digits}f}", x=left - 6, y=y(level) + 4, text_anchor="end"))
     every = max(1, math.ceil(len(values) / 11))
     for push in range(0, len(values), every):
         parts.append(tag("text", str(push), x=x(push), y=_HEIGHT - _BOTTOM + 16, text_anchor="middle"))
-    middle = (_LEFT + _WIDTH - _RIGHT) / 2
+    middle = (left + _WIDTH - _RIGHT) / 2
     parts.append(tag("text", "pushes", x=middle, y=_HEIGHT - 3, text_anchor="middle", class_="axis"))
     if limit is not None:
-        parts.append(tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y(limit), y2=y(limit), class_="limit"))
+        parts.append(tag("line", x1=left, x2=_WIDTH - _RIGHT, y1=y(limit), y2=y(limit), class_="limit"))
     for run in _runs(values):
         parts.append(tag("polyline", points=" ".join(f"{x(k)},{y(v)}" for k, v in run), class_=f"curve {style}"))
         parts += [tag("circle", cx=x(k), cy=y(v), r=3.5, class_=f"dot {style}") for k, v in run]

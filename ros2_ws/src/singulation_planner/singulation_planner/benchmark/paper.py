@@ -2,6 +2,9 @@
 
 from typing import NamedTuple
 
+# Scenes of the columns of Table I.
+CASES = {"easy": "n == 3 and group < 2", "hard": "n == 15 and group > 1", "average": "n > 0"}
+
 
 class TableOneRow(NamedTuple):
     """Runtime [ms] (with simulation of the push), then (s' - s)/s and its percentage of Brute Force's."""

@@ -8,6 +8,7 @@ from singulation_core import ContactMode
 from singulation_planner.benchmark.compare import compare, comparison_table
 from singulation_planner.benchmark.figure import figure_six
 from singulation_planner.benchmark.record import Record
+from singulation_planner.benchmark.rematch import rematch, rematch_table
 from singulation_planner.benchmark.settings import SETTINGS
 from singulation_planner.benchmark.simulators import simulator_table
 from singulation_planner.benchmark.store import export
@@ -42,11 +43,13 @@ def run_report(records: Sequence[Record], out: Path) -> str:
 
 
 def comparison_report(file: Path, out: Path) -> str:
-    """Write ``compare.csv`` and ``compare.md``; returns the table."""
+    """Write ``compare.csv``, ``rematch.csv`` and ``compare.md``; returns the tables."""
     out.mkdir(parents=True, exist_ok=True)
     rows = compare(file)
     rows.to_csv(out / "compare.csv", index=False)
-    text = comparison_table(rows)
+    matches = rematch(file)
+    matches.to_csv(out / "rematch.csv", index=False)
+    text = comparison_table(rows) + "\n" + rematch_table(matches)
     write(out, "compare", text)
     return text
 

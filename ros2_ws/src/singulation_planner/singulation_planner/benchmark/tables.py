@@ -1,22 +1,16 @@
 """Tables I and II of the paper from the results of a run, beside the paper's figures."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import pandas as pd
 
 from singulation_core.polygon import FloatArray
 from singulation_planner.benchmark.markdown import table
-from singulation_planner.benchmark.paper import AUTHORS_CODE, TABLE_ONE, TABLE_TWO, in_order, label
+from singulation_planner.benchmark.paper import AUTHORS_CODE, CASES, TABLE_ONE, TABLE_TWO, in_order, label
 from singulation_planner.benchmark.run import BRUTE_FORCE
 from singulation_planner.benchmark.statistics import Estimate, gains, share
 
 _POINT = ("single_point", "contact_mode")
-_CASES: Mapping[str, str] = {
-    "easy": "n == 3 and group < 2",
-    "hard": "n == 15 and group > 1",
-    "average": "n > 0",
-}
 
 
 def table_one(results: pd.DataFrame, setting_text: str) -> str:
@@ -33,12 +27,12 @@ def table_one(results: pd.DataFrame, setting_text: str) -> str:
     rows = []
     for name in policies:
         row = [label(name), f"{times['planning'][name]:.3g}", f"{times.sum(axis=1)[name]:.3g}", _paper_time(name)]
-        for case, query in _CASES.items():
+        for case, query in CASES.items():
             cell = gain.query(query)
             row += [_absolute(cell, name, start), _of_brute_force(cell, name).percent(), _paper_share(name, case)]
         rows.append(row)
     header = ["policy", "plan [ms]", "plan + one push [ms]", "paper [ms]"]
-    header += [text for case in _CASES for text in (f"{case}: s'-s ; (s'-s)/s", "% of BF", "paper")]
+    header += [text for case in CASES for text in (f"{case}: s'-s ; (s'-s)/s", "% of BF", "paper")]
     return _heading(gain, results, setting_text) + table(header, rows)
 
 
@@ -95,7 +89,7 @@ def authors_table(results: pd.DataFrame) -> str:
     rows = []
     for name in in_order(set(results["policy"])):
         if name in AUTHORS_CODE:
-            shares = [_of_brute_force(gain.query(_CASES[case]), name).percent() for case in ("average", "easy", "hard")]
+            shares = [_of_brute_force(gain.query(CASES[case]), name).percent() for case in ("average", "easy", "hard")]
             rows.append([label(name), *[text for pair in zip(shares, _texts(name), strict=True) for text in pair]])
     header = ["policy (% of BF)", "average", "authors' code", "easy", "authors' code", "hard", "authors' code"]
     return table(header, rows)
@@ -106,10 +100,10 @@ def judged_table(results: pd.DataFrame) -> str:
     single = results[(results["contact_mode"] == _POINT[0]) & (results["fits"] == _POINT[1])]
     gain = gains(single.assign(after=single["judged"]))
     rows = [
-        [label(name), *[_of_brute_force(gain.query(query), name).percent() for query in _CASES.values()]]
+        [label(name), *[_of_brute_force(gain.query(query), name).percent() for query in CASES.values()]]
         for name in in_order(set(single["policy"]))
     ]
-    return table(["policy (% of BF, judged)", *_CASES], rows)
+    return table(["policy (% of BF, judged)", *CASES], rows)
 
 
 def _texts(name: str) -> list[str]:

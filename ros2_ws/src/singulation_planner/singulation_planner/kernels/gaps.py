@@ -6,6 +6,7 @@ from numba import njit
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
+_FREED = 0.1  # what the last step to a wide enough gap counts for: almost free is not free
 _PAIRS = 0.3  # weight of what the gaps of all pairs lack, beside each block's smallest gap
 
 
@@ -134,7 +135,7 @@ def outcome_values(
         changes: (m,) written: change of the mean log distance of all pairs.
         clearances: (m,) written: mean over the blocks of the gap to the nearest other one, at most ``width``, less a
             share of what the gaps of all pairs lack to ``width`` (else nothing is gained by freeing a block of one of
-            several neighbours); in units of ``width``.
+            several neighbours); in units of ``width``. Each block that is free counts for a little more.
     """
     n = len(radii)
     corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n, dtype=np.int64)
@@ -154,4 +155,6 @@ def outcome_values(
             lacking = _nearest_gaps(pose, moved, radii, corners, firsts, gaps, width, nearest)
             for i in range(n):
                 clearances[c] += (1.0 - _PAIRS) * max(0.0, nearest[i]) / (n * width)
+                if nearest[i] >= width:
+                    clearances[c] += _FREED / n
             clearances[c] -= _PAIRS * lacking / (n * width)

@@ -13,6 +13,7 @@ from singulation_planner.scene import Scene
 
 # Of the change of s beside the clearance: among pushes that clear as much, the one that spreads more.
 _SPREAD = 0.05
+_RESERVE = 1.05  # planned gaps over asked ones: what is simulated is not quite what happens
 _FLOOR = 0.05  # smallest distance that counts [mean bounding radii], as in the singulation distance
 
 
@@ -70,7 +71,7 @@ def make_objective(scene: Scene, options: Options) -> Objective:
     return Objective(
         scene,
         weights,
-        options.clearance_width or WIDTH * scene.scale,
+        _RESERVE * (options.clearance_width or WIDTH * scene.scale),
         all_gaps(scene.vertices, scene.firsts),
         scene.vertices - scene.centroids[owners],
     )

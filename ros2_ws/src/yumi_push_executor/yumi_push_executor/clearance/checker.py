@@ -63,7 +63,7 @@ class Checker:
         sizes = margins.by_kind()
         for request, pair in zip(self._geometry_data.collisionRequests, scene.pairs, strict=True):
             request.security_margin = sizes[pair.kind]
-        self._near = NearPairs(scene, self._data, self._q, max(astuple(margins)))
+        self._near = NearPairs(scene, self._data, self._geometry_data, self._q, max(astuple(margins)))
         self._changing = [(k, pair) for k, pair in enumerate(scene.pairs) if pair.kind in _CHANGING]
         self._stage: Stage | None = None
         self._counted = np.ones(len(scene.pairs), dtype=bool)  # in this stage

@@ -12,21 +12,23 @@ from yumi_push_executor.clearance.shapes import robot_shapes
 from yumi_push_executor.kinematics import chain
 from yumi_push_executor.kinematics.model import arm_model, robot
 
+_FEW = 4  # postures for which it takes longer to judge the pairs than to check them
+
 
 class NearPairs:
     """Bounding spheres of the moving arm's shapes and of what stands around it.
 
     Args:
         scene: with the moving arm.
-        data: Pinocchio's working data of the robot.
+        data, geometry_data: Pinocchio's working data of the robot and of the scene.
         q: configuration of the whole robot with the jaws as they will stand.
         margin: largest of any pair [m].
     """
 
-    def __init__(self, scene: Scene, data: Any, q: FloatArray, margin: float) -> None:
+    def __init__(self, scene: Scene, data: Any, geometry_data: Any, q: FloatArray, margin: float) -> None:
         model = arm_model(scene.arm)
         self._chain, self._count = model.chain, len(scene.pairs)
-        centres, radii = _spheres(scene.geometry, data, q)
+        centres, radii = _spheres(scene.geometry, data, geometry_data, q)
         joint_of = np.full(len(centres), -1)
         for shape in robot_shapes():
             if shape.arm == scene.arm:
@@ -46,6 +48,8 @@ class NearPairs:
     def along(self, postures: FloatArray) -> NDArray[np.bool_]:
         """Whether each pair of the scene can meet in any of (n, 7) postures; True where that is not known."""
         near = np.ones(self._count, dtype=bool)
+        if len(postures) < _FEW:
+            return near
         links = chain.places(self._chain, postures).links[:, self._joints]
         centres = np.einsum("nsij,sj->nsi", links[..., :3], self._offsets) + links[..., 3]
         apart = ((centres[:, self._own] - self._standing) ** 2).sum(axis=2).min(axis=0)
@@ -53,9 +57,8 @@ class NearPairs:
         return near
 
 
-def _spheres(geometry: Any, data: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _spheres(geometry: Any, data: Any, placed: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Centres (k, 3) in ``yumi_body`` and radii (k,) of spheres around all shapes; infinite for the table."""
-    placed = pin.GeometryData(geometry)
     pin.updateGeometryPlacements(robot(), data, geometry, placed, q)
     centres, radii = [], []
     for item, pose in zip(geometry.geometryObjects, placed.oMg, strict=True):

@@ -1,0 +1,27 @@
+"""After the warm-up nothing is left to compile: the first cloud is as fast as the second."""
+
+import subprocess
+import sys
+
+PROGRAM = """
+import sys
+import singulation_perception
+from numba.core.dispatcher import Dispatcher
+
+INNER = ("_heights", "fitted_line")  # called by compiled functions only, but kept apart for their sums
+
+singulation_perception.warm_up()
+for name, module in list(sys.modules.items()):
+    if name.startswith("singulation_perception."):
+        for function in vars(module).values():
+            if isinstance(function, Dispatcher) and function.py_func.__module__ == name:
+                inner = function.targetoptions.get("no_cpython_wrapper") or function.py_func.__name__ in INNER
+                if not inner and len(function.signatures) != 1:
+                    print(name, function.py_func.__name__, len(function.signatures))
+"""
+
+
+def test_every_compiled_function_is_compiled_once():
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
