@@ -20,7 +20,7 @@ from singulation_node.guard import guarded, report_failure
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.parameters import parameter
-from singulation_node.qos import LATCHED
+from singulation_node.qos import RECORD
 from singulation_planner import POLICIES
 
 _RESULT_TIMEOUT = 900  # s that a result is kept for a client that asks late
@@ -61,7 +61,7 @@ class SingulateNode(ManagedNode[SingulateSettings]):
 
     def configure(self) -> None:
         """Publishers exist from here on."""
-        self._outcomes = self.create_publisher(PushOutcome, "outcomes", LATCHED)
+        self._outcomes = self.create_publisher(PushOutcome, "outcomes", RECORD)
 
     def activate(self) -> None:
         """Connect to camera, planner and executor, and take goals."""

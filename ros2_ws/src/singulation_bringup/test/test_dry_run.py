@@ -32,7 +32,7 @@ def test_the_first_push_is_slow_and_low_only_where_it_pushes():
     motion, found = phases(MotionParameters(approach_speed=0.05, vertical_speed=0.02, push_speed=0.01))
     by_name = {one.phase: one for one in found}
     assert by_name["PUSH"].fastest_tip == pytest.approx(0.010, rel=0.02)
-    assert by_name["PUSH"].lowest_tip == pytest.approx(0.005, abs=0.0006)
+    assert by_name["PUSH"].lowest_tip == pytest.approx(MotionParameters().tip_height, abs=0.0006)
     assert by_name["DESCEND"].fastest_tip <= 0.0205
     assert by_name["APPROACH"].fastest_tip <= 0.0505
     assert by_name["APPROACH"].lowest_tip > 0.05

@@ -21,7 +21,7 @@ from std_srvs.srv import Trigger
 
 from singulation_bringup.singulate_node import SingulateNode
 from singulation_core import Arrangement, ContactMode, PlanarObject, Push, ResultCode, conversions
-from singulation_node.qos import LATCHED, STATE
+from singulation_node.qos import RECORD, STATE
 from singulation_node.testing import Mailbox, spinning, wait_until
 
 SQUARE = np.array(((0.0, 0.0), (0.04, 0.0), (0.04, 0.04), (0.0, 0.04)))
@@ -128,7 +128,7 @@ def expect_success(ask):
 
 
 def test_it_singulates_and_tells_every_push(setting, ask):
-    outcomes = Mailbox(setting[1], PushOutcome, "outcomes", LATCHED)
+    outcomes = Mailbox(setting[1], PushOutcome, "outcomes", RECORD)
     result = expect_success(ask)
     assert len(result.outcomes) == 2
     assert len(result.singulation_distance) == 3

@@ -1,7 +1,7 @@
 """``compile_kernels``: compile now what every node would else compile at its first start.
 
-Numba keeps the result beside the sources, or in the user's cache folder where those cannot be written. ``scripts/setup``
-runs this; on a cell that is built in another way run it once after each update.
+Numba keeps the result beside the sources, or in the user's cache folder where those cannot be written.
+``scripts/setup`` runs this; on a cell that is built in another way run it once after each update.
 """
 
 import multiprocessing
@@ -11,38 +11,23 @@ import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 
-
-def _perception() -> None:
-    from singulation_perception import warm_up
-
-    warm_up()
-
-
-def _planner() -> None:
-    from singulation_planner import warm_up
-
-    warm_up()
+from singulation_perception import warm_up as warm_perception
+from singulation_planner import warm_up as warm_planner
+from singulation_sim.camera import warm_up as warm_camera
+from yumi_push_executor.executor_settings import ExecutorSettings
+from yumi_push_executor.push_planner import PushPlanner
 
 
-def _executor() -> None:
-    from yumi_push_executor.executor_settings import ExecutorSettings
-    from yumi_push_executor.push_planner import PushPlanner
-
+def _warm_executor() -> None:
     PushPlanner(ExecutorSettings()).warm_up()
-
-
-def _camera() -> None:
-    from singulation_sim.camera import warm_up
-
-    warm_up()
 
 
 # The longest first, so that two cores end at about the same time.
 ROOMS: Mapping[str, Callable[[], None]] = {
-    "perception": _perception,
-    "planner": _planner,
-    "executor": _executor,
-    "simulated camera": _camera,
+    "perception": warm_perception,
+    "planner": warm_planner,
+    "executor": _warm_executor,
+    "simulated camera": warm_camera,
 }
 
 

@@ -20,7 +20,7 @@ from singulation_bringup.demo.summary import Summary, object_entry, push_entry
 from singulation_bringup.demo.terminal import say
 from singulation_bringup.drawing import picture_of_progress, picture_of_push
 from singulation_core import CellGeometry, ResultCode, SingulationError, conversions, smallest_gap
-from singulation_node.qos import LATCHED
+from singulation_node.qos import RECORD
 from singulation_perception.bag_writing import BagRecorder
 
 _START = 600.0  # s; the first start on a machine compiles camera, segmentation, planner and clearance checks
@@ -95,7 +95,7 @@ class CellPart:
             self._record(recorder, "/outcomes", message)
             self._outcomes.put(message)
 
-        observer.hear(PushOutcome, "outcomes", record_outcome, LATCHED)
+        observer.hear(PushOutcome, "outcomes", record_outcome, RECORD)
         observer.hear(Clock, "/clock", self._on_clock)
         observer.hear(ArrangementMsg, "true_objects", self._film.see_table)
         observer.hear(JointState, "joint_states", self._film.see_arms)

@@ -101,7 +101,7 @@ def _parser() -> argparse.ArgumentParser:
         help="separated means gaps of this width [m] (default: %(default)s)",
     )
     parser.add_argument(
-        "--speed", type=float, default=4.0, help="of simulated time (default: %(default)s times real time)"
+        "--speed", type=float, default=2.0, help="of simulated time (default: %(default)s times real time)"
     )
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="result folder (default: results/demo_<time>)")
     parser.add_argument(

@@ -57,8 +57,8 @@ def _shears(scene: Scene, one: int, other: int, options: Options) -> Candidates:
     partners = (other, other, one, one)
     shape = scene.centroids, scene.radii, scene.vertices, scene.firsts
     free = [
-        free_travel(*shape, int(index), partner, *direction.tolist(), _FAR * scene.scale)
-        for index, partner, direction in zip(objects, partners, directions, strict=True)
+        free_travel(*shape, int(index), partner, x, y, _FAR * scene.scale)
+        for index, partner, (x, y) in zip(objects, partners, directions.tolist(), strict=True)
     ]
     outwards = ((scene.centroids[objects] - scene.centroids.sum(axis=0) / len(scene)) * directions).sum(axis=1)
     order = np.lexsort((-comparable(outwards, scene.scale), -comparable(np.array(free), scene.scale)))

@@ -59,4 +59,4 @@ def _outward(scene: Scene, options: Options) -> tuple[FloatArray, FloatArray]:
 
 def _free(scene: Scene, directions: FloatArray) -> FloatArray:
     shape, limit = (scene.centroids, scene.radii, scene.vertices, scene.firsts), _FAR * scene.scale
-    return np.array([free_travel(*shape, k, -1, *way, limit) for k, way in enumerate(directions.tolist())])
+    return np.array([free_travel(*shape, k, -1, x, y, limit) for k, (x, y) in enumerate(directions.tolist())])
