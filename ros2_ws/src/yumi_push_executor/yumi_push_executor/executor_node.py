@@ -14,6 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
@@ -48,11 +49,17 @@ _SEND = 0.2  # s that rclpy may take to send a result after its callback has ret
 
 
 class ExecutorNode(ManagedNode[ExecutorSettings]):
-    """See the module."""
+    """See the module.
 
-    def __init__(self, **options: Any) -> None:
+    Args:
+        own_process: nothing else lives in this process, so its memory may be tuned for the node.
+        options: of the ROS node.
+    """
+
+    def __init__(self, own_process: bool = False, **options: Any) -> None:
         super().__init__("executor_node", ExecutorSettings, **options)
         self.ledger = GoalLedger()
+        self._own_process = own_process
         self._simulated = False
         self._execution: PushExecution | None = None
 
@@ -115,9 +122,10 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         self.get_logger().info("warming up; the first time ever this compiles and takes some seconds")
         planner = self.make_planner()
         planner.warm_up()
-        # What is loaded by now stays: looking through it for garbage would stop every thread for a tenth of a second.
-        gc.collect()
-        gc.freeze()
+        if self._own_process:
+            # What is loaded by now stays: to look through it for garbage would stop all threads for a tenth of a second.
+            gc.collect()
+            gc.freeze()
         self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")
         return planner
 
@@ -235,7 +243,7 @@ def _close(goal: Any, code: ResultCode) -> None:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node."""
-    return run_node(ExecutorNode, args, threads=6)
+    return run_node(partial(ExecutorNode, own_process=True), args, threads=6)
 
 
 if __name__ == "__main__":
