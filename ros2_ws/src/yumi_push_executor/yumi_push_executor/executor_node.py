@@ -123,7 +123,7 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         planner = self.make_planner()
         planner.warm_up()
         if self._own_process:
-            # What is loaded by now stays: to look through it for garbage would stop all threads for a tenth of a second.
+            # What is loaded by now stays: collecting garbage in it would stop all threads for 0.1 s.
             gc.collect()
             gc.freeze()
         self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")
