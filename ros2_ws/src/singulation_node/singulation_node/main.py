@@ -4,12 +4,12 @@ import signal
 import sys
 import threading
 from collections.abc import Sequence
+from functools import partial
 from types import FrameType
 from typing import Any, Protocol
 
 import rclpy
 from rclpy.executors import MultiThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
@@ -17,8 +17,8 @@ from rclpy.utilities import remove_ros_args
 from singulation_core import SingulationError
 from singulation_node.guard import report_failure
 from singulation_node.managed_node import ManagedNode
+from singulation_node.spinning import spin_until
 
-_WAKE = 0.2  # s; a signal is noticed within this time even while nothing happens
 _SHUTDOWN = 15.0  # s that a node may take to stop what it is doing
 
 
@@ -51,7 +51,7 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
             configured = not wanted or _configure(node, starting, stop)
             if not configured or (wanted and node.trigger_activate() != TransitionCallbackReturn.SUCCESS):
                 return 1
-            _spin(executor, node, stop)
+            spin_until(executor, stop, partial(report_failure, node, "executor"))
             if isinstance(node, ManagedNode) and node.is_active:
                 _shut_down_while_spinning(executor, node)
         finally:
@@ -99,17 +99,6 @@ def _stop_on_signals(starting: threading.Event, stop: threading.Event, executor:
         signal.signal(number, handle)
 
 
-def _spin(executor: Any, node: Any, stop: threading.Event) -> None:
-    while not stop.is_set():
-        try:
-            executor.spin_once(timeout_sec=_WAKE)
-        except (_rclpy.InvalidHandle, _rclpy.RCLError) as error:
-            # An entity was destroyed between being listed and being waited for; the next turn does not list it.
-            node.get_logger().debug(f"executor: {error}")
-        except Exception as error:  # from a callback that is not ours, such as one inside rclpy
-            report_failure(node, "executor", error)
-
-
 def _shut_down_while_spinning(executor: Any, node: Any) -> None:
     """A node that stops a robot still needs its callbacks while it does so."""
     finished = threading.Event()
@@ -125,5 +114,5 @@ def _shut_down_while_spinning(executor: Any, node: Any) -> None:
     limit = threading.Timer(_SHUTDOWN, finished.set)
     limit.daemon = True
     limit.start()
-    _spin(executor, node, finished)
+    spin_until(executor, finished, partial(report_failure, node, "executor"))
     limit.cancel()

@@ -14,6 +14,7 @@ from rclpy.executors import MultiThreadedExecutor
 
 from singulation_node.domain import reserved_domain
 from singulation_node.qos import STATE
+from singulation_node.spinning import spin_until
 
 
 @pytest.fixture
@@ -37,11 +38,12 @@ def spinning(*nodes: Any, threads: int = 4) -> Iterator[None]:
     executor = MultiThreadedExecutor(num_threads=threads, context=nodes[0].context)
     for node in nodes:
         executor.add_node(node)
-    stop = threading.Event()
-    thread = threading.Thread(target=_spin_until, args=(executor, stop), daemon=True)
+    stop, failures = threading.Event(), list[Exception]()
+    thread = threading.Thread(target=spin_until, args=(executor, stop, failures.append), daemon=True)
     thread.start()
     try:
         yield
+        assert not failures, f"callbacks threw {failures}"
     finally:
         stop.set()
         executor.wake()
@@ -50,11 +52,6 @@ def spinning(*nodes: Any, threads: int = 4) -> Iterator[None]:
             executor.remove_node(node)
             node.destroy_node()
         executor.shutdown(timeout_sec=2.0)
-
-
-def _spin_until(executor: Any, stop: threading.Event) -> None:
-    while not stop.is_set():
-        executor.spin_once(timeout_sec=0.1)
 
 
 def wait_until(condition: Callable[[], Any], timeout: float = 20.0, what: str = "the condition") -> Any:

@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import rclpy
@@ -24,9 +25,10 @@ from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, ResultCode, SingulationError
-from singulation_node.guard import guarded, guarded_service
+from singulation_node.guard import guarded, guarded_service, report_failure
 from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import plain_arguments
+from singulation_node.spinning import spin_until
 from singulation_perception.cloud_messages import cloud_message
 from singulation_perception.clouds import RecordedCloud
 from singulation_perception.playback import Recording, Rhythm, find_recording
@@ -154,12 +156,8 @@ def _spinning(node: Node) -> Iterator[None]:
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
     done = threading.Event()
-
-    def spin() -> None:
-        while not done.is_set():
-            executor.spin_once(timeout_sec=0.1)
-
-    thread = threading.Thread(target=spin, name="executor", daemon=True)
+    failed = partial(report_failure, node, "executor")
+    thread = threading.Thread(target=spin_until, args=(executor, done, failed), name="executor", daemon=True)
     thread.start()
     try:
         yield

@@ -4,6 +4,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
 import rclpy
@@ -12,6 +13,8 @@ from rclpy.executors import MultiThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
 from singulation_core import ResultCode, SingulationError
+from singulation_node.guard import report_failure
+from singulation_node.spinning import spin_until
 
 Value = TypeVar("Value")
 
@@ -42,7 +45,12 @@ class CommandNode:
         self._executor.add_node(self.node)
         self._clients: dict[str, Any] = {}
         self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name="executor", daemon=True)
+        self._thread = threading.Thread(
+            target=spin_until,
+            args=(self._executor, self._stop, partial(report_failure, self.node, "executor")),
+            name="executor",
+            daemon=True,
+        )
 
     def __enter__(self) -> "CommandNode":
         self._thread.start()
@@ -103,7 +111,6 @@ class CommandNode:
         Raises:
             SingulationError: ``TIMEOUT`` or ``CANCELLED``.
         """
-        # Kept until the end: one destroyed while the other thread looks for its next answer would end the spinning.
         if name not in self._clients:
             self._clients[name] = self.node.create_client(kind, name)
         client = self._clients[name]
@@ -111,7 +118,3 @@ class CommandNode:
         future = client.call_async(request)
         self.wait(future.done, answer, f"answer of {client.srv_name}")
         return future.result()
-
-    def _spin(self) -> None:
-        while not self._stop.is_set():
-            self._executor.spin_once(timeout_sec=0.1)

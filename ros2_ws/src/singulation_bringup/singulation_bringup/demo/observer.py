@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 import rclpy
@@ -12,8 +13,9 @@ from rclpy.context import Context
 from rclpy.executors import MultiThreadedExecutor
 
 from singulation_core import ResultCode, SingulationError
-from singulation_node.guard import guarded
+from singulation_node.guard import guarded, report_failure
 from singulation_node.qos import SENSOR_IN, STATE
+from singulation_node.spinning import spin_until
 
 Value = TypeVar("Value")
 
@@ -36,7 +38,11 @@ class Observer:
         self._executor = MultiThreadedExecutor(num_threads=3, context=self._context)
         self._executor.add_node(self.node)
         self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread = threading.Thread(
+            target=spin_until,
+            args=(self._executor, self._stop, partial(report_failure, self.node, "executor")),
+            daemon=True,
+        )
         self._clients: dict[str, Any] = {}
         self._statuses: dict[str, dict[str, str]] = {}
         self.hear(DiagnosticArray, "/diagnostics", self._on_diagnostics, STATE)
@@ -90,7 +96,6 @@ class Observer:
         Raises:
             SingulationError: ``TIMEOUT``.
         """
-        # Kept until the end: one destroyed while another thread looks for its next answer would end the spinning.
         if name not in self._clients:
             self._clients[name] = self.node.create_client(kind, name)
         client = self._clients[name]
@@ -121,7 +126,3 @@ class Observer:
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
             self._statuses[status.name] = {**values, "message": status.message}
-
-    def _spin(self) -> None:
-        while not self._stop.is_set():
-            self._executor.spin_once(timeout_sec=0.1)
