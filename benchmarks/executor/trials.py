@@ -12,6 +12,7 @@ from benchmarks.executor.pushes import Task
 from benchmarks.executor.reach import ReachMap
 
 from singulation_core import CellGeometry, ResultCode, SingulationError
+from singulation_planner.benchmark.progress import Progress
 from yumi_push_executor import Motion, MotionParameters, plan_motion
 
 
@@ -34,7 +35,11 @@ def run(tasks: list[Task], reach: ReachMap, audited: bool) -> list[Trial]:
         _planned(task)
     gc.collect()
     gc.freeze()
-    return [_trial(task, reach, audited) for task in tasks]
+    progress, trials = Progress(len(tasks)), []
+    for task in tasks:
+        trials.append(_trial(task, reach, audited))
+        progress.step()
+    return trials
 
 
 def write_trials(path: Path, trials: list[Trial]) -> None:

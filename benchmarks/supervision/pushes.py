@@ -9,6 +9,7 @@ from benchmarks.supervision.robot import BenchRobot
 
 from singulation_core import ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
+from singulation_planner.benchmark.progress import Progress
 from yumi_push_executor.supervision import Phase
 
 _NAN = float("nan")
@@ -60,7 +61,11 @@ class Executed:
 def execute_pushes(count: int, seed: int) -> list[Executed]:
     """Plan and run random pushes among blocks; every one starts where the one before has left the arms."""
     robot = BenchRobot(seed=seed)
-    return [_execute(robot, task) for task in random_tasks(count, seed, blocks=True)]
+    progress, executed = Progress(count), []
+    for task in random_tasks(count, seed, blocks=True):
+        executed.append(_execute(robot, task))
+        progress.step()
+    return executed
 
 
 def pushes_table(executed: list[Executed]) -> list[str]:
