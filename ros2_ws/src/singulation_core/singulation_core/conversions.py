@@ -71,12 +71,13 @@ def object_from_msg(message: Any) -> PlanarObject:
     Raises:
         InvalidInputError: an outline that is not convex, counter-clockwise and finite; the text names the object.
     """
-    corners = np.array([(p.x, p.y) for p in message.outline.points], dtype=np.float64).reshape(-1, 2)
+    corners = [(point.x, point.y) for point in message.outline.points]
     # Vertices closer than float32 can tell apart arrive as one point twice.
     if len(corners) > 3:
-        corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
+        corners = [corner for corner, last in zip(corners, corners[-1:] + corners[:-1], strict=True) if corner != last]
+    outline = np.array(corners, dtype=np.float64).reshape(-1, 2)
     return PlanarObject(
-        int(message.id), corners, float(message.height), int(message.point_count), float(message.confidence)
+        int(message.id), outline, float(message.height), int(message.point_count), float(message.confidence)
     )
 
 

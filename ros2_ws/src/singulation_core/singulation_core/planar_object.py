@@ -6,13 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from singulation_core.errors import InvalidInputError
-from singulation_core.polygon import (
-    FloatArray,
-    area_centroid,
-    bounding_radius,
-    signed_area,
-    validated_outline,
-)
+from singulation_core.polygon import FloatArray, measured_outline
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +41,9 @@ class PlanarObject:
             raise InvalidInputError(f"{name}: height {self.height} m, need a finite one >= 0")
         if not (0.0 <= self.confidence <= 1.0):
             raise InvalidInputError(f"{name}: confidence {self.confidence}, need 0..1")
-        outline = validated_outline(self.outline, name)
-        centre = area_centroid(outline)
-        centre.setflags(write=False)
-        object.__setattr__(self, "outline", outline)
-        object.__setattr__(self, "centroid", centre)
-        object.__setattr__(self, "bounding_radius", bounding_radius(outline, centre))
-        object.__setattr__(self, "area", signed_area(outline))
+        measured = measured_outline(self.outline, name)
+        for attribute, value in zip(measured._fields, measured, strict=True):
+            object.__setattr__(self, attribute, value)
 
     def moved(self, translation: ArrayLike, rotation: float = 0.0) -> "PlanarObject":
         """The same block turned by ``rotation`` [rad] about its centroid, then shifted by (2,) [m]."""

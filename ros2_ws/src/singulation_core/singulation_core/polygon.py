@@ -1,7 +1,7 @@
 """Geometry of convex polygons in the plane. Outlines are (k, 2) float64, counter-clockwise, metres."""
 
 import math
-from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,39 +20,67 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
-def signed_area(outline: FloatArray) -> float:
-    """Area of a (k, 2) polygon, positive when counter-clockwise [m^2].
+class MeasuredOutline(NamedTuple):
+    """A convex, counter-clockwise outline and what follows from it.
 
-    Like all that is asked of every outline, in plain Python: for a few vertices it is ten times as fast as NumPy.
+    Attributes:
+        outline: (k, 2) vertices [m], read-only.
+        area: [m^2].
+        centroid: (2,) of the area [m], read-only.
+        bounding_radius: largest distance of the centroid to a vertex [m] (paper, section V-A).
     """
-    corners = outline.tolist()
-    x0, y0 = corners[0]
-    total = 0.0
-    for (ax, ay), (bx, by) in pairwise(corners):
-        total += (ax - x0) * (by - y0) - (ay - y0) * (bx - x0)
-    return 0.5 * total
+
+    outline: FloatArray
+    area: float
+    centroid: FloatArray
+    bounding_radius: float
+
+
+def signed_area(outline: FloatArray) -> float:
+    """Area of a (k, 2) polygon, positive when counter-clockwise [m^2]."""
+    return _moments(outline.tolist())[0]
 
 
 def area_centroid(outline: FloatArray) -> FloatArray:
     """Centroid of the area of a (k, 2) polygon, shape (2,) [m]."""
-    corners = outline.tolist()
-    x0, y0 = corners[0]
-    total, x, y = 0.0, 0.0, 0.0
-    for (ax, ay), (bx, by) in pairwise([(x1 - x0, y1 - y0) for x1, y1 in corners]):
-        weight = ax * by - ay * bx
-        total, x, y = total + weight, x + weight * (ax + bx), y + weight * (ay + by)
-    scale = 1.0 / (3.0 * total) if total != 0.0 else math.nan
-    return np.array((x0 + x * scale, y0 + y * scale))
+    return np.array(_moments(outline.tolist())[1:])
 
 
 def bounding_radius(outline: FloatArray, centre: FloatArray) -> float:
     """Largest distance of ``centre`` to a vertex [m] (paper, section V-A)."""
-    x, y = float(centre[0]), float(centre[1])
-    return max(math.hypot(ax - x, ay - y) for ax, ay in outline.tolist())
+    return _farthest(outline.tolist(), float(centre[0]), float(centre[1]))
+
+
+# What is asked of every outline is in plain Python: for a few vertices it is ten times as fast as NumPy.
+def _moments(corners: list[list[float]]) -> tuple[float, float, float]:
+    """Signed area [m^2] and x, y of its centroid [m], which are NaN if there is no area."""
+    x0, y0 = corners[0]
+    total, x, y = 0.0, 0.0, 0.0
+    ax, ay = 0.0, 0.0
+    for x1, y1 in corners:
+        bx, by = x1 - x0, y1 - y0
+        weight = ax * by - ay * bx
+        total, x, y = total + weight, x + weight * (ax + bx), y + weight * (ay + by)
+        ax, ay = bx, by
+    scale = 1.0 / (3.0 * total) if total != 0.0 else math.nan
+    return 0.5 * total, x0 + x * scale, y0 + y * scale
+
+
+def _farthest(corners: list[list[float]], x: float, y: float) -> float:
+    return max([math.hypot(ax - x, ay - y) for ax, ay in corners])
 
 
 def validated_outline(outline: ArrayLike, name: str = "outline") -> FloatArray:
     """A read-only (k, 2) float64 copy of a convex, counter-clockwise outline.
+
+    Raises:
+        InvalidInputError: as ``measured_outline``.
+    """
+    return measured_outline(outline, name).outline
+
+
+def measured_outline(outline: ArrayLike, name: str = "outline") -> MeasuredOutline:
+    """A copy of a convex, counter-clockwise outline, with its area, centroid and bounding radius.
 
     Raises:
         InvalidInputError: fewer than three vertices, not finite, repeated vertices, no area,
@@ -62,27 +90,23 @@ def validated_outline(outline: ArrayLike, name: str = "outline") -> FloatArray:
     if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
         raise InvalidInputError(f"{name}: shape {points.shape}, need (k >= 3, 2)")
     corners: list[list[float]] = points.tolist()
-    if not all(math.isfinite(x) and math.isfinite(y) for x, y in corners):
+    across, up = zip(*corners, strict=True)
+    if not math.isfinite(sum(across) + sum(up)) and not np.isfinite(points).all():
         raise InvalidInputError(f"{name}: vertex {_first_bad(points)} is not finite")
-    size = _extent(corners)
+    size = max(max(across) - min(across), max(up) - min(up))
     edges = [(bx - ax, by - ay) for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True)]
     lengths = [math.hypot(x, y) for x, y in edges]
     if not (min(lengths) > 1e-9 * size):
         raise InvalidInputError(f"{name}: vertex {lengths.index(min(lengths))} is repeated or all coincide")
-    area = signed_area(points)
+    area, x, y = _moments(corners)
     if not (abs(area) > 1e-9 * size * size):
         raise InvalidInputError(f"{name}: area {area:.3g} m^2, the vertices lie on one line")
     if area < 0.0:
         raise InvalidInputError(f"{name}: clockwise, need counter-clockwise")
     _require_convex(edges, size, name)
-    points.setflags(write=False)
-    return points
-
-
-def _extent(corners: list[list[float]]) -> float:
-    """Longer side of the box around the corners."""
-    across, up = zip(*corners, strict=True)
-    return float(max(max(across) - min(across), max(up) - min(up)))
+    centroid = np.array((x, y))
+    points.flags.writeable = centroid.flags.writeable = False
+    return MeasuredOutline(points, area, centroid, _farthest(corners, x, y))
 
 
 def _first_bad(points: FloatArray) -> int:
@@ -91,15 +115,17 @@ def _first_bad(points: FloatArray) -> int:
 
 def _require_convex(edges: list[tuple[float, float]], size: float, name: str) -> None:
     """Every turn to the left and one full turn in all, else it crosses itself."""
-    most, vertex, turned = -math.inf, 0, 0.0
-    for k, ((ax, ay), (bx, by)) in enumerate(zip(edges, edges[1:] + edges[:1], strict=True)):
+    dents, turned = [], 0.0
+    ax, ay = edges[-1]
+    for vertex, (bx, by) in enumerate(edges):
         turn = ax * by - ay * bx
-        inward = -turn / max(math.hypot(ax + bx, ay + by), 1e-12 * size)
+        if not (turn > 0.0):
+            dents.append((-turn / max(math.hypot(ax + bx, ay + by), 1e-12 * size), vertex))
         turned += math.atan2(turn, ax * bx + ay * by)
-        if inward > most:
-            most, vertex = inward, (k + 1) % len(edges)
-    if not (most <= _CONVEXITY_SLACK * size):
-        raise InvalidInputError(f"{name}: not convex at vertex {vertex} ({most:.3g} m inside)")
+        ax, ay = bx, by
+    inside, vertex = max(dents, default=(0.0, 0))
+    if not (inside <= _CONVEXITY_SLACK * size):
+        raise InvalidInputError(f"{name}: not convex at vertex {vertex} ({inside:.3g} m inside)")
     full_turns = turned / (2.0 * math.pi)
     if not (abs(full_turns - 1.0) < 1e-3):
         raise InvalidInputError(f"{name}: crosses itself ({full_turns:.1f} turns, need 1)")
