@@ -10,7 +10,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -49,13 +48,14 @@ def main() -> int:
     parser.add_argument("--policies", nargs="+", default=["cluster_push", "min_overlap", "cluster_diffusion"])
     parser.add_argument("--out", type=Path, default=Path("bench_results/planner_node"), help="folder for the table")
     options = parser.parse_args()
-    with reserved_domain() as domain, _planner(domain) as pid, _client(domain) as node:
+    with reserved_domain() as domain, _planner(domain) as pid, _client(domain) as executor:
+        node = executor.get_nodes()[0]
         client = node.create_client(PlanPush, "plan_push")
         if not client.wait_for_service(timeout_sec=_START_TIMEOUT):
             print(f"planner_node did not come up within {_START_TIMEOUT} s", file=sys.stderr)
             return 1
         cells = [(policy, count) for policy in options.policies for count in _COUNTS]
-        rows = [_row(node, client, policy, count, options.requests, pid) for policy, count in cells]
+        rows = [_row(executor, client, policy, count, options.requests, pid) for policy, count in cells]
     table = [_HEADER, ("---",) * len(_HEADER), *rows]
     text = "\n".join(f"| {' | '.join(row)} |" for row in table) + "\n"
     options.out.mkdir(parents=True, exist_ok=True)
@@ -80,17 +80,14 @@ def _planner(domain: int) -> Iterator[int]:
 
 @contextlib.contextmanager
 def _client(domain: int) -> Iterator[Any]:
-    """A node that spins in the background."""
+    """An executor with a node."""
     rclpy.init(domain_id=domain)
     node, executor = rclpy.create_node("planner_client"), SingleThreadedExecutor()
     executor.add_node(node)
-    thread = threading.Thread(target=executor.spin, daemon=True)
-    thread.start()
     try:
-        yield node
+        yield executor
     finally:
         executor.shutdown(timeout_sec=2.0)
-        thread.join(timeout=5.0)
         node.destroy_node()
         rclpy.try_shutdown()
 
@@ -101,19 +98,21 @@ def _processor_time(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def _row(node: Any, client: Any, policy: str, count: int, requests: int, pid: int) -> tuple[str, ...]:
+def _row(executor: Any, client: Any, policy: str, count: int, requests: int, pid: int) -> tuple[str, ...]:
     messages = [arrangement_to_msg(clutter(count, seed, _SIZE)) for seed in range(20)]
     round_trips, planning, used = [], [], 0.0
     for number in range(requests + 10):
         if number == 10:  # the first ones find the way
             used = _processor_time(pid) + time.process_time()
         request = PlanPush.Request(arrangement=messages[number % len(messages)], policy=policy)
-        request.arrangement.header.stamp = node.get_clock().now().to_msg()
+        request.arrangement.header.stamp = executor.get_nodes()[0].get_clock().now().to_msg()
         started = time.perf_counter()
-        future, answered = client.call_async(request), threading.Event()
-        future.add_done_callback(lambda _, event=answered: event.set())
-        if not answered.wait(_ANSWER_TIMEOUT):
-            raise TimeoutError(f"{policy}, {count} objects: no answer within {_ANSWER_TIMEOUT} s")
+        future = client.call_async(request)
+        # spin_until_future_complete makes a new timer for every future, which takes longer with each of them.
+        while not future.done():
+            executor.spin_once(timeout_sec=_ANSWER_TIMEOUT)
+            if time.perf_counter() > started + _ANSWER_TIMEOUT:
+                raise TimeoutError(f"{policy}, {count} objects: no answer within {_ANSWER_TIMEOUT} s")
         answer = future.result()
         if answer.code != ResultCode.OK:
             raise RuntimeError(f"{policy}, {count} objects: {answer.message}")

@@ -9,7 +9,7 @@ from types import FrameType
 from typing import Any, Protocol
 
 import rclpy
-from rclpy.executors import MultiThreadedExecutor
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
@@ -34,6 +34,12 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
     ``--autostart`` on the command line (or the parameter ``autostart``) makes a lifecycle node configure and activate
     itself; otherwise it waits for its manager.
 
+    Args:
+        factory: makes the node.
+        args: command line; None: that of the process.
+        threads: for callbacks. With one of them they run in the thread that waits for them, which saves a node whose
+            callbacks exclude each other anyway the way to another thread and the contention with it.
+
     Returns:
         Exit code: 0 after a signal, 1 if the node could not be made or started.
     """
@@ -42,7 +48,7 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
     starting, stop = threading.Event(), threading.Event()
     rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        executor = MultiThreadedExecutor(num_threads=threads)
+        executor = SingleThreadedExecutor() if threads == 1 else MultiThreadedExecutor(num_threads=threads)
         _stop_on_signals(starting, stop, executor)
         node = factory()
         try:

@@ -130,7 +130,7 @@ class PlannerNode(ManagedNode[PlannerSettings]):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point."""
-    return run_node(PlannerNode, args)
+    return run_node(PlannerNode, args, threads=1)
 
 
 if __name__ == "__main__":
