@@ -2,23 +2,9 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled_maker, compiled_part
+from singulation_core.jit import compiled, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
-
-
-@compiled_part
-def _squared_gyration(vertices: FloatArray, first: int, last: int, x: float, y: float) -> float:
-    """Moment of inertia over mass about (x, y) [m^2]."""
-    area, moment = 0.0, 0.0
-    for k in range(first, last):
-        after = k + 1 if k + 1 < last else first
-        ax, ay = vertices[k, 0] - x, vertices[k, 1] - y
-        bx, by = vertices[after, 0] - x, vertices[after, 1] - y
-        weight = ax * by - bx * ay
-        area += weight
-        moment += weight * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by)
-    return moment / (6.0 * area)
 
 
 @compiled_part
@@ -62,11 +48,12 @@ def _force(
     return fx, fy, (rx * fy - ry * fx) / gyration
 
 
-@compiled_maker
+@compiled
 def paths_alone(
     centroids: FloatArray,
     vertices: FloatArray,
     firsts: IntArray,
+    gyrations: FloatArray,
     targets: IntArray,
     starts: FloatArray,
     directions: FloatArray,
@@ -79,15 +66,11 @@ def paths_alone(
 
     Args:
         centroids, vertices, firsts: as in ``Scene``.
+        gyrations: (n,) moments of inertia over mass [m^2].
         targets, starts, directions: (m,), (m, 2), (m, 2) pushes.
         tip, travel, friction: radius [m], way [m] and friction of the tip.
         paths: (m, k, 2), written: displacement of the centroid [m] after each kth of the way.
     """
-    count = len(firsts) - 1
-    gyrations = np.empty(count)
-    for i in range(count):
-        x, y = centroids[i, 0], centroids[i, 1]
-        gyrations[i] = _squared_gyration(vertices, firsts[i], firsts[i + 1], x, y)
     steps = paths.shape[1]
     for c in range(len(targets)):
         i, dx, dy, advance = targets[c], directions[c, 0], directions[c, 1], travel / steps

@@ -1,19 +1,69 @@
-"""What a push would do if blocks were discs: the score that decides which pushes are simulated.
+"""What a push would do if blocks kept their directions: the score that decides which pushes are simulated.
 
-Two blocks keep, while one pushes the other, the distance of centroids at which they would touch as they lie now; that
-is what makes discs good enough in touching clutter.
+Two blocks are in each other's way where two outlines would be that are cut roughly around them: a disc, as large that
+the two would touch at the distance of centroids at which they touch as they lie now, and the plane between them there.
+That is what makes so little good enough in touching clutter. A block that is pushed goes its quasi-static way: it
+turns as the force beside its centroid makes it turn, but its outline does not.
 """
 
 import numpy as np
 
 from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.log_change import log_change
 from singulation_planner.kernels.types import IntArray
 
-# A block goes along the line of centres and, by friction, a little the way of the one that pushes it; the first one
-# slides off those it meets. Both found by comparison with the push physics.
-_DRAG, _YIELD = 0.3, 0.6
+# The first block slides off those it meets, and is held up by them: shares of what it would push them aside and ahead.
+# Found by comparison with the push physics (scenes of ``benchmarks/rollout`` with seeds 3000 to 3003).
+_YIELD, _HELD = 0.3, 0.1
+_FRICTION = 0.5
+_LEAST = 1e-3  # of the way that a contact gives way; without a bound a block beside its contact would go anywhere
 _FLOOR = 0.05  # smallest distance that counts, in units of the scale, as in the singulation distance
+
+
+@compiled_part
+def _in_the_way(
+    points: FloatArray, i: int, j: int, contact: FloatArray, planes: FloatArray
+) -> tuple[float, float, float, bool]:
+    """How deep blocks i and j are in each other (0: not), the normal from i to j, and whether it is that of the plane.
+
+    Args:
+        points: (n, 2) where the blocks are [m].
+        contact: (n, n) distances of centroids at which they touch [m].
+        planes: (n, n, 3) from ``touching``.
+    """
+    dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+    apart2 = dx * dx + dy * dy
+    if apart2 >= contact[i, j] * contact[i, j] or apart2 == 0.0:
+        return 0.0, 1.0, 0.0, False
+    nx, ny = planes[i, j, 0], planes[i, j, 1]
+    flat = planes[i, j, 2] - dx * nx - dy * ny
+    if flat <= 0.0:
+        return 0.0, 1.0, 0.0, False
+    apart = np.sqrt(apart2)
+    if flat < contact[i, j] - apart:
+        return flat, nx, ny, True
+    return contact[i, j] - apart, dx / apart, dy / apart, False
+
+
+@compiled_part
+def _shift(
+    mx: float, my: float, nx: float, ny: float, rx: float, ry: float, gyration: float, depth: float
+) -> tuple[float, float]:
+    """Shift of a block that another one, going along (mx, my), pushes out of its way by ``depth`` along (nx, ny).
+
+    It does so at (rx, ry) from the block's centroid, by a force within the cone of friction.
+    """
+    lever = (rx * my - ry * mx) / (gyration + rx * rx + ry * ry)
+    fx, fy = mx + ry * lever, my - rx * lever
+    pressed, aside = fx * nx + fy * ny, fy * nx - fx * ny
+    if abs(aside) > _FRICTION * pressed:
+        side = _FRICTION if aside > 0.0 else -_FRICTION
+        fx, fy = nx - side * ny, ny + side * nx
+    spin = (rx * fy - ry * fx) / gyration
+    yields = (fx - spin * ry) * nx + (fy + spin * rx) * ny
+    way = depth / max(yields, _LEAST)
+    return way * fx, way * fy
 
 
 @compiled_part
@@ -21,6 +71,9 @@ def _spread(
     points: FloatArray,
     before: FloatArray,
     contact: FloatArray,
+    planes: FloatArray,
+    arms: FloatArray,
+    gyrations: FloatArray,
     target: int,
     queue: IntArray,
     rank: IntArray,
@@ -31,7 +84,7 @@ def _spread(
     Args:
         points: (n, 2) where the blocks are, the target already further on; written [m].
         before: (n, 2) where they were [m].
-        contact: (n, n) distances at which they touch [m].
+        contact, planes, arms, gyrations: of all pairs, and of all blocks.
         target: the block that the pusher pushes.
         queue, rank: (n,) room to work in.
         moved: (n,) written: 1 where a block was pushed.
@@ -46,21 +99,17 @@ def _spread(
         head += 1
         mx, my = points[i, 0] - before[i, 0], points[i, 1] - before[i, 1]
         way = np.sqrt(mx * mx + my * my)
-        drag = _DRAG / way if way > 0.0 else 0.0
+        if way > 0.0:
+            mx, my = mx / way, my / way
         for j in range(n):
             if rank[j] >= 0 and rank[j] <= rank[i]:
                 continue
-            dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
-            apart2 = dx * dx + dy * dy
-            if apart2 >= contact[i, j] * contact[i, j] or apart2 == 0.0:
+            depth, nx, ny, flat = _in_the_way(points, i, j, contact, planes)
+            if depth <= 0.0:
                 continue
-            apart = np.sqrt(apart2)
-            wx, wy = dx / apart + drag * mx, dy / apart + drag * my
-            size = np.sqrt(wx * wx + wy * wy)
-            wx, wy = wx / size, wy / size
-            along = dx * wx + dy * wy  # on along w until the distance is that of contact
-            shift = np.sqrt(max(0.0, along * along - apart2 + contact[i, j] ** 2)) - along
-            points[j, 0], points[j, 1] = points[j, 0] + shift * wx, points[j, 1] + shift * wy
+            rx, ry = (arms[i, j, 0], arms[i, j, 1]) if flat else (0.0, 0.0)
+            x, y = _shift(mx, my, nx, ny, rx, ry, gyrations[j], depth)
+            points[j, 0], points[j, 1] = points[j, 0] + x, points[j, 1] + y
             moved[j] = 1.0
             if rank[j] < 0:
                 rank[j] = rank[i] + 1
@@ -70,38 +119,24 @@ def _spread(
 
 @compiled_part
 def _give_way(
-    points: FloatArray, contact: FloatArray, target: int, dx: float, dy: float, deflection: FloatArray
+    points: FloatArray,
+    contact: FloatArray,
+    planes: FloatArray,
+    target: int,
+    dx: float,
+    dy: float,
+    deflection: FloatArray,
 ) -> None:
-    """Move the target aside, across (dx, dy), by a share of what it would push others aside."""
+    """Move the target back by a share of what it would push others, across (dx, dy) and along it."""
     for j in range(len(points)):
-        rx, ry = points[j, 0] - points[target, 0], points[j, 1] - points[target, 1]
-        apart2 = rx * rx + ry * ry
-        if j == target or apart2 >= contact[target, j] * contact[target, j] or apart2 == 0.0:
+        if j == target:
             continue
-        apart = np.sqrt(apart2)
-        aside = _YIELD * (contact[target, j] - apart) * (ry * dx - rx * dy) / apart
-        for axis, across in ((0, -dy), (1, dx)):
-            points[target, axis] -= aside * across
-            deflection[axis] -= aside * across
-
-
-@compiled_part
-def _log_gain(before: FloatArray, after: FloatArray, moved: FloatArray, floor: float) -> float:
-    """Change of the mean log distance of all pairs."""
-    n = len(before)
-    total = 0.0
-    for i in range(n):
-        if moved[i] == 0.0:
-            continue
-        ratio = 1.0
-        for j in range(n):
-            if j == i or (moved[j] != 0.0 and j < i):
-                continue
-            dx, dy = after[j, 0] - after[i, 0], after[j, 1] - after[i, 1]
-            ex, ey = before[j, 0] - before[i, 0], before[j, 1] - before[i, 1]
-            ratio *= max(dx * dx + dy * dy, floor * floor) / max(ex * ex + ey * ey, floor * floor)
-        total += 0.5 * np.log(ratio)
-    return float(total / (0.5 * n * (n - 1)))
+        depth, nx, ny, _ = _in_the_way(points, target, j, contact, planes)
+        aside, back = _YIELD * depth * (ny * dx - nx * dy), _HELD * depth * (nx * dx + ny * dy)
+        x, y = back * dx - aside * dy, back * dy + aside * dx
+        if depth > 0.0:
+            points[target, 0], points[target, 1] = points[target, 0] - x, points[target, 1] - y
+            deflection[0], deflection[1] = deflection[0] - x, deflection[1] - y
 
 
 @compiled_part
@@ -128,6 +163,9 @@ def _clearance(before: FloatArray, after: FloatArray, gaps: FloatArray, moved: F
 def disc_scores(
     centroids: FloatArray,
     gaps: FloatArray,
+    planes: FloatArray,
+    arms: FloatArray,
+    gyrations: FloatArray,
     targets: IntArray,
     directions: FloatArray,
     paths: FloatArray,
@@ -141,6 +179,7 @@ def disc_scores(
     Args:
         centroids: (n, 2) [m].
         gaps: (n, n) gaps between the outlines [m], the diagonal is not read.
+        planes, arms, gyrations: from ``touching``.
         targets: (m,) the blocks that are pushed.
         directions: (m, 2) unit vectors of the pushes.
         paths: (m, k, 2) displacements of the targets on their way [m].
@@ -168,8 +207,8 @@ def disc_scores(
                 last[j, 0], last[j, 1] = after[j, 0], after[j, 1]
             after[target, 0] = centroids[target, 0] + paths[c, step, 0] + deflection[0]
             after[target, 1] = centroids[target, 1] + paths[c, step, 1] + deflection[1]
-            _give_way(after, contact, target, directions[c, 0], directions[c, 1], deflection)
-            _spread(after, last, contact, target, queue, rank, moved)
-        scores[c] = weights[0] * _log_gain(centroids, after, moved, _FLOOR * scale)
+            _give_way(after, contact, planes, target, directions[c, 0], directions[c, 1], deflection)
+            _spread(after, last, contact, planes, arms, gyrations, target, queue, rank, moved)
+        scores[c] = weights[0] * log_change(centroids, after, moved, _FLOOR * scale)
         if weights[1] != 0.0:
             scores[c] += weights[1] * _clearance(centroids, after, gaps, moved, width)

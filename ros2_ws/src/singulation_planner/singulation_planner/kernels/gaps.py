@@ -1,19 +1,24 @@
 """Gaps between the outlines of all blocks, as they lie and after pushes."""
 
 import numpy as np
-from numba import njit
 
+from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
+from singulation_planner.kernels.log_change import log_change
 from singulation_planner.kernels.types import IntArray
 
 _FREED = 0.1  # what the last step to a wide enough gap counts for: almost free is not free
 _PAIRS = 0.3  # weight of what the gaps of all pairs lack, beside each block's smallest gap
 
 
-@njit(cache=True)
-def _one_sided(corners: FloatArray, first: int, last: int, other_first: int, other_last: int) -> tuple[float, float]:
-    """Largest separation along the normals of the first outline, and squared distance of the other's vertices to it."""
-    widest, squared = -np.inf, np.inf
+@compiled_part
+def _one_sided(
+    corners: FloatArray, first: int, last: int, other_first: int, other_last: int
+) -> tuple[float, float, int]:
+    """Largest separation along the normals of the first outline, squared distance of the other's vertices to it, and
+    the edge with that normal.
+    """
+    widest, squared, edge = -np.inf, np.inf, first
     for k in range(first, last):
         after = k + 1 if k + 1 < last else first
         x, y = corners[k, 0], corners[k, 1]
@@ -27,20 +32,22 @@ def _one_sided(corners: FloatArray, first: int, last: int, other_first: int, oth
             along = min(1.0, max(0.0, (rx * ex + ry * ey) / length2))
             px, py = rx - along * ex, ry - along * ey
             squared = min(squared, px * px + py * py)
-        widest = max(widest, nearest / np.sqrt(length2))
-    return widest, squared
+        if nearest / np.sqrt(length2) > widest:
+            widest, edge = nearest / np.sqrt(length2), k
+    return widest, squared, edge
 
 
-@njit(cache=True)
-def outline_gap(corners: FloatArray, first: int, last: int, other_first: int, other_last: int) -> float:
-    """Distance of two convex outlines [m]; minus the depth where they overlap."""
-    one, squared = _one_sided(corners, first, last, other_first, other_last)
-    other, squared_other = _one_sided(corners, other_first, other_last, first, last)
+@compiled_part
+def outline_gap(corners: FloatArray, first: int, last: int, other_first: int, other_last: int) -> tuple[float, int]:
+    """Distance of two convex outlines [m], minus the depth where they overlap, and the edge that separates most."""
+    one, squared, edge = _one_sided(corners, first, last, other_first, other_last)
+    other, squared_other, other_edge = _one_sided(corners, other_first, other_last, first, last)
     deepest = max(one, other)
-    return deepest if deepest <= 0.0 else np.sqrt(min(squared, squared_other))
+    gap = deepest if deepest <= 0.0 else np.sqrt(min(squared, squared_other))
+    return gap, edge if one >= other else other_edge
 
 
-@njit(cache=True)
+@compiled_part
 def _put(shapes: FloatArray, first: int, last: int, x: float, y: float, turn: float, corners: FloatArray) -> None:
     c, s = np.cos(turn), np.sin(turn)
     for k in range(first, last):
@@ -48,22 +55,22 @@ def _put(shapes: FloatArray, first: int, last: int, x: float, y: float, turn: fl
         corners[k, 1] = y + s * shapes[k, 0] + c * shapes[k, 1]
 
 
-@njit(cache=True)
-def all_gaps(corners: FloatArray, firsts: IntArray) -> FloatArray:
-    """(n, n) gaps of all pairs [m]; infinite on the diagonal."""
+@compiled_maker
+def all_gaps(corners: FloatArray, firsts: IntArray) -> tuple[FloatArray, IntArray]:
+    """(n, n) gaps of all pairs [m], infinite on the diagonal, and the edges (n, n) that separate them most."""
     n = len(firsts) - 1
-    gaps = np.full((n, n), np.inf)
+    gaps, edges = np.full((n, n), np.inf), np.zeros((n, n), dtype=np.int64)
     for i in range(n):
         for j in range(i):
-            gaps[i, j] = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
-            gaps[j, i] = gaps[i, j]
-    return gaps
+            gap, edge = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
+            gaps[i, j], gaps[j, i], edges[i, j], edges[j, i] = gap, gap, edge, edge
+    return gaps, edges
 
 
-@njit(cache=True)
+@compiled_part
 def _nearest_gaps(
     pose: FloatArray,
-    moved: IntArray,
+    moved: FloatArray,
     radii: FloatArray,
     corners: FloatArray,
     firsts: IntArray,
@@ -80,35 +87,17 @@ def _nearest_gaps(
     for i in range(n):
         for j in range(i):
             gap = gaps[i, j]
-            if moved[i] != 0 or moved[j] != 0:
+            if moved[i] != 0.0 or moved[j] != 0.0:
                 dx, dy = pose[i, 0] - pose[j, 0], pose[i, 1] - pose[j, 1]
                 gap = np.sqrt(dx * dx + dy * dy) - radii[i] - radii[j]
                 if gap < width:
-                    gap = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
+                    gap = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])[0]
             nearest[i], nearest[j] = min(nearest[i], gap), min(nearest[j], gap)
             lacking += width - min(width, max(0.0, gap))
     return lacking
 
 
-@njit(cache=True)
-def _log_change(before: FloatArray, after: FloatArray, moved: IntArray, floor: float) -> float:
-    """Change of the mean log distance of all pairs."""
-    n, total = len(before), 0.0
-    for i in range(n):
-        if moved[i] == 0:
-            continue
-        ratio = 1.0
-        for j in range(n):
-            if j == i or (moved[j] != 0 and j < i):
-                continue
-            dx, dy = after[j, 0] - after[i, 0], after[j, 1] - after[i, 1]
-            ex, ey = before[j, 0] - before[i, 0], before[j, 1] - before[i, 1]
-            ratio *= max(dx * dx + dy * dy, floor * floor) / max(ex * ex + ey * ey, floor * floor)
-        total += 0.5 * np.log(ratio)
-    return float(total / (0.5 * n * (n - 1)))
-
-
-@njit(cache=True)
+@compiled_maker
 def outcome_values(
     outlines: FloatArray,
     firsts: IntArray,
@@ -138,7 +127,7 @@ def outcome_values(
             several neighbours); in units of ``width``. Each block that is free counts for a little more.
     """
     n = len(radii)
-    corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n, dtype=np.int64)
+    corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n)
     for c in range(len(poses)):
         pose = poses[c]
         changes[c], clearances[c] = np.nan, 0.0
@@ -146,9 +135,9 @@ def outcome_values(
             continue
         for i in range(n):
             way = max(abs(pose[i, 0] - before[i, 0]), abs(pose[i, 1] - before[i, 1]))
-            moved[i] = 1 if max(way, abs(pose[i, 2] - before[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0
+            moved[i] = 1.0 if max(way, abs(pose[i, 2] - before[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0.0
             nearest[i] = width
-        changes[c] = _log_change(before, pose, moved, floor)
+        changes[c] = log_change(before, pose, moved, floor)
         if width > 0.0:
             for i in range(n):
                 _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)

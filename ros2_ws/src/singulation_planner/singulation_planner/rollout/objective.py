@@ -7,6 +7,7 @@ import numpy as np
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.discs import disc_scores
 from singulation_planner.kernels.gaps import all_gaps, outcome_values
+from singulation_planner.kernels.touching import touching
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.rollout.options import WIDTH, Options
 from singulation_planner.scene import Scene
@@ -27,6 +28,7 @@ class Objective:
         width: gap beyond which no clearance is gained [m].
         gaps: (n, n) between the outlines [m].
         outlines: (v, 2) vertices around their centroids [m].
+        planes, arms, gyrations: from ``touching``.
     """
 
     scene: Scene
@@ -34,14 +36,20 @@ class Objective:
     width: float
     gaps: FloatArray
     outlines: FloatArray
+    planes: FloatArray
+    arms: FloatArray
+    gyrations: FloatArray
 
     def scores(self, objects: IntArray, directions: FloatArray, paths: FloatArray) -> FloatArray:
-        """(m,) values of pushes if blocks were discs and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
+        """(m,) values of pushes if blocks did not turn and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
         scores = np.empty(len(objects))
         scene = self.scene
         disc_scores(
             scene.centroids,
             self.gaps,
+            self.planes,
+            self.arms,
+            self.gyrations,
             objects,
             directions,
             paths,
@@ -68,10 +76,12 @@ def make_objective(scene: Scene, options: Options) -> Objective:
     """Objective that the options ask for."""
     weights = np.array((_SPREAD, 1.0) if options.objective == "clearance" else (1.0, 0.0))
     owners: IntArray = np.repeat(np.arange(len(scene)), np.diff(scene.firsts))
+    gaps, edges = all_gaps(scene.vertices, scene.firsts)
     return Objective(
         scene,
         weights,
         _RESERVE * (options.clearance_width or WIDTH * scene.scale),
-        all_gaps(scene.vertices, scene.firsts),
+        gaps,
         scene.vertices - scene.centroids[owners],
+        *touching(scene.centroids, scene.vertices, scene.firsts, edges, scene.scale),
     )

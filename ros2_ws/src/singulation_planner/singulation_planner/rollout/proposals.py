@@ -83,10 +83,10 @@ def _on_lines(placer: Placer, objects: IntArray, angles: FloatArray, lines: Floa
 
 def _scores(placer: Placer, objective: Objective, proposals: Proposals) -> FloatArray:
     one = proposals.candidates
-    return objective.scores(one.objects, one.directions, _paths(placer, proposals))
+    return objective.scores(one.objects, one.directions, _paths(placer, objective, proposals))
 
 
-def _paths(placer: Placer, proposals: Proposals) -> FloatArray:
+def _paths(placer: Placer, objective: Objective, proposals: Proposals) -> FloatArray:
     """(m, k, 2) displacements of the push objects [m] if nothing else were there."""
     scene, one = placer.scene, proposals.candidates
     if placer.mode is not ContactMode.SINGLE_POINT:  # wide contacts hold their object
@@ -98,6 +98,7 @@ def _paths(placer: Placer, proposals: Proposals) -> FloatArray:
         scene.centroids,
         scene.vertices,
         scene.firsts,
+        objective.gyrations,
         one.objects,
         proposals.starts,
         one.directions,

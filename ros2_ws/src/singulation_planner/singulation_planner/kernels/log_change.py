@@ -1,0 +1,30 @@
+"""Change of the singulation distance."""
+
+import numpy as np
+
+from singulation_core.jit import compiled_part
+from singulation_core.polygon import FloatArray
+
+
+@compiled_part
+def log_change(before: FloatArray, after: FloatArray, moved: FloatArray, floor: float) -> float:
+    """Change of the mean log distance of all pairs.
+
+    Args:
+        before, after: (n, 2 or more) positions [m].
+        moved: (n,) 0 where both are the same.
+        floor: smallest distance that counts [m].
+    """
+    n, total = len(before), 0.0
+    for i in range(n):
+        if moved[i] == 0.0:
+            continue
+        ratio = 1.0
+        for j in range(n):
+            if j == i or (moved[j] != 0.0 and j < i):
+                continue
+            dx, dy = after[j, 0] - after[i, 0], after[j, 1] - after[i, 1]
+            ex, ey = before[j, 0] - before[i, 0], before[j, 1] - before[i, 1]
+            ratio *= max(dx * dx + dy * dy, floor * floor) / max(ex * ex + ey * ey, floor * floor)
+        total += 0.5 * np.log(ratio)
+    return float(total / (0.5 * n * (n - 1)))
