@@ -23,7 +23,7 @@ from singulation_core import CellGeometry, ResultCode, SingulationError, convers
 from singulation_node.qos import RECORD
 from singulation_perception.bag_writing import BagRecorder
 
-_START = 600.0  # s; the first start on a machine compiles camera, segmentation, planner and clearance checks
+_START = 600.0  # s; without the set-up's compiling, the first start on a machine compiles all of it
 _LATE = 60.0  # s; a busy machine hands messages on late
 _PER_PUSH = 90.0  # s of wall time, far more than any push takes
 _RECORDED: tuple[tuple[str, Any], ...] = (
@@ -121,7 +121,7 @@ class CellPart:
                 settings += ["-p", f"max_age:={5.0 + 15.0 * options.speed}", "-p", "plan_on_arrival:=false"]
             processes.start(package, executable, ["--autostart", "--ros-args", *settings])
         for _, name in _NODES:
-            say(f"  waiting for {name} (the first start on a machine compiles)")
+            say(f"  waiting for {name}")
             observer.wait(partial(_is_active, observer, name), _START, name)
 
     def _singulate(self, observer: Observer) -> Any:

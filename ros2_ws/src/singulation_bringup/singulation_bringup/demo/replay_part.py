@@ -19,7 +19,7 @@ from singulation_bringup.drawing import picture_of_frame
 from singulation_core import Arrangement, Push, ResultCode, SingulationError, conversions
 from singulation_perception.playback import Recording
 
-_START = 600.0  # s; the first start on a machine compiles the segmentation
+_START = 600.0  # s; without the set-up's compiling, the first start on a machine compiles the segmentation
 _FRAME = 60.0  # s for one cloud
 # Of a foreign recording neither the camera pose nor the size of the blocks is known.
 _PLANE_FIT = ("camera_pose_source:=plane_fit", "crop_to_workspace:=false", "max_height:=1.0")
@@ -66,7 +66,7 @@ class ReplayPart:
         topic = ["--topic", self._options.topic] if self._options.topic else []
         replay = [*map(str, self._paths), "--step", "--stamps", "now", "--wait", str(_START), *topic]
         processes.start("singulation_perception", "replay_clouds", replay)
-        say("starting perception and planner (the first start on a machine compiles, up to a minute)")
+        say("starting perception and planner")
         observer.wait(
             lambda: observer.status("perception_node: state").get("message") == "active", _START, "perception_node"
         )
