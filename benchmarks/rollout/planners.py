@@ -47,7 +47,8 @@ BRUTE_FORCE = Planner("brute_force", "Brute Force", "brute_force")
 FAST_BRUTE_FORCE = Planner(
     "brute_force_compiled", "Brute Force in the compiled simulator", "brute_force", {"physics": PushPhysics.fast()}
 )
-BUDGETS: Sequence[float] = (0.0, 0.1, 1.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0, 10000.0)
+BUDGETS: Sequence[float] = (0.0, 0.1, 1.0, 3.0, 5.0, 10.0, 30.0, 100.0)
+LONG_BUDGETS: Sequence[float] = (1000.0, 10000.0)
 WORKED: Sequence[Planner] = tuple(_worked(count) for count in (8, 32, 96, 160, 400))
 NOMINAL: Sequence[Planner] = (
     Planner("cluster_push", "ClusterPush", "cluster_push"),
@@ -57,6 +58,7 @@ NOMINAL: Sequence[Planner] = (
     *(_rollout(budget) for budget in BUDGETS),
     *WORKED,
 )
+LONG: Sequence[Planner] = (BRUTE_FORCE, FAST_BRUTE_FORCE, *(_rollout(budget) for budget in LONG_BUDGETS))
 MODES: Sequence[Planner] = (
     BRUTE_FORCE,
     FAST_BRUTE_FORCE,
