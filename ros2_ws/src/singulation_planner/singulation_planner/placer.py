@@ -1,8 +1,9 @@
 """Reachability: where the pusher starts and which candidates it can perform (paper, section III-A)."""
 
 import math
-from collections import Counter
+from collections import defaultdict
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -55,7 +56,7 @@ class Placer:
     walls: Walls
     placement: Placement
     geometry: PusherGeometry
-    rejected: Counter[int] = field(default_factory=Counter)
+    rejected: defaultdict[int, int] = field(default_factory=partial(defaultdict, int))
 
     @property
     def travel(self) -> float:
@@ -73,7 +74,7 @@ class Placer:
             index = self._place(candidates, index + 1, False, starts, status)
         if index >= 0:
             return index, starts[index]
-        self.rejected.update(status.tolist())
+        self._count(status)
         return None
 
     def feasible(self, candidates: Candidates) -> tuple[IntArray, FloatArray]:
@@ -81,7 +82,7 @@ class Placer:
         starts, status = self._blank(len(candidates.objects))
         self._place(candidates, 0, True, starts, status)
         self._mark_over_edge(candidates, starts, status)
-        self.rejected.update(status[status != FEASIBLE].tolist())
+        self._count(status[status != FEASIBLE])
         chosen = np.flatnonzero(status == FEASIBLE)
         return chosen, starts[chosen]
 
@@ -110,8 +111,14 @@ class Placer:
         parts = [f"{self.rejected[code]} {text}" for code, text in _REASONS.items() if self.rejected[code]]
         return f"of {sum(self.rejected.values())} candidate pushes " + ", ".join(parts)
 
+    def _count(self, refused: IntArray) -> None:
+        for code in refused.tolist():
+            self.rejected[code] += 1
+
     def _blank(self, count: int) -> tuple[FloatArray, IntArray]:
-        return np.empty((count, 2)), np.full(count, UNTRIED, dtype=np.int64)
+        status = np.empty(count, dtype=np.int64)
+        status.fill(UNTRIED)
+        return np.empty((count, 2)), status
 
     def _place(self, candidates: Candidates, begin: int, every: bool, starts: FloatArray, status: IntArray) -> int:
         scene, placement = self.scene, self.placement

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import accumulate
-from math import fsum, hypot
+from math import fsum
 from typing import Self
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from singulation_core import Arrangement, ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.displaced import displaced
+from singulation_planner.kernels.order import canonical_order
 from singulation_planner.kernels.overlap import deepest_overlap
 from singulation_planner.kernels.types import IntArray
 
@@ -58,13 +59,14 @@ class Scene:
             raise SingulationError(
                 ResultCode.NOTHING_TO_DO, f"arrangement: {n} object(s), singulation needs at least two"
             )
-        order = _canonical_order(arrangement)
-        outlines = [arrangement.objects[k].outline for k in order]
+        centroids, radii, objects = arrangement.centroids, arrangement.bounding_radii, arrangement.objects
+        index = canonical_order(centroids, radii, np.array([item.area for item in objects]))
+        order = tuple(index.tolist())
+        outlines = [objects[k].outline for k in order]
         firsts = np.array((0, *accumulate(map(len, outlines))), dtype=np.int64)
-        index = np.array(order)
-        radii = arrangement.bounding_radii[index]
+        radii = radii[index]
         scale = fsum(radii.tolist()) / n
-        scene = cls(arrangement, order, arrangement.centroids[index], radii, np.concatenate(outlines), firsts, scale)
+        scene = cls(arrangement, order, centroids[index], radii, np.concatenate(outlines), firsts, scale)
         scene._refuse_overlaps(overlap_tolerance)
         return scene
 
@@ -102,22 +104,3 @@ class Scene:
                 f"objects {self.object_id(one)} and {self.object_id(other)} overlap by {depth:.4g} m; at most "
                 f"{tolerance:.0%} of the smaller bounding radius is taken for noise",
             )
-
-
-def _canonical_order(arrangement: Arrangement) -> tuple[int, ...]:
-    objects, n = arrangement.objects, len(arrangement)
-    positions = arrangement.centroids.tolist()
-    # fsum rounds once, at the end: the same mean in whatever order the objects are numbered.
-    mean_x, mean_y = fsum(x for x, _ in positions) / n, fsum(y for _, y in positions) / n
-    largest = max(item.bounding_radius for item in objects)
-    keys = [
-        (
-            round(item.bounding_radius / largest, 6),
-            round(item.area / largest**2, 6),
-            round(hypot(x - mean_x, y - mean_y) / largest, 6),
-            x,
-            y,
-        )
-        for item, (x, y) in zip(objects, positions, strict=True)
-    ]
-    return tuple(sorted(range(n), key=keys.__getitem__))

@@ -8,10 +8,12 @@ from singulation_planner import POLICIES, plan_push
 from singulation_planner.candidates import Candidates, through_centroid
 from singulation_planner.directions import away, fan
 from singulation_planner.kernels import scoring
+from singulation_planner.kernels.cluster_fans import _pushes_two
 from singulation_planner.kernels.sweep import obstructed_widths
 from singulation_planner.policies import find_policy
 from singulation_planner.policies.center_object_removal import Options as RemovalOptions
 from singulation_planner.policies.center_object_removal import _away_from_segment
+from singulation_planner.policies.cluster_push import Options, _rules
 from singulation_planner.policies.min_contact_range import _narrowest
 from singulation_planner.policy import REGISTERED, NoOptions, policy
 from singulation_planner.scene import Scene
@@ -91,14 +93,12 @@ def test_every_reading_of_case_one_leads_away_from_the_other_heap(reading):
 
 
 def test_case_one_needs_what_its_reading_says():
-    from singulation_planner.policies.cluster_push import Options, _pushes_two
-
     cases = {(4, 2): (True, True, True), (3, 1): (False, True, False), (4,): (False, False, True), (2, 3): (False,) * 3}
     for sizes, expected in cases.items():
         labels = np.repeat(np.arange(len(sizes)), sizes)
         readings = ("both", "largest", "more_than_three")
-        assert tuple(_pushes_two(labels, Options(case_one=one)) for one in readings) == expected
-        assert not _pushes_two(labels, Options(case_one="never"))
+        assert tuple(_pushes_two(labels, _rules(Options(case_one=one))[1]) for one in readings) == expected
+        assert not _pushes_two(labels, _rules(Options(case_one="never"))[1])
 
 
 def test_distances_to_ray_segment_and_line():

@@ -90,7 +90,9 @@ def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
     Raises:
         SingulationError: as ``plan_push``.
     """
-    best = job.contact_mode == BEST_MODE
+    best, placement = job.contact_mode == BEST_MODE, setting.placement
+    if placement.fits != job.fits:
+        placement = replace(placement, fits=job.fits)  # type: ignore[arg-type]
     return plan_push(
         scenario.arrangement,
         job.policy,
@@ -98,7 +100,7 @@ def plan(setting: Setting, scenario: Scenario, job: Job) -> Push:
         push_distance=setting.push_distance,
         pusher=setting.pusher,
         seed=zlib.crc32(scenario.key.encode()),  # not the scene's own, which other scenes share
-        placement=replace(setting.placement, fits=job.fits),  # type: ignore[arg-type]
+        placement=placement,
         best_contact_mode=best,
         physics=setting.physics,
         **setting.options.get(job.policy, {}),

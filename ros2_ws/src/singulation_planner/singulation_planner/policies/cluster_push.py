@@ -6,28 +6,34 @@ the reading that separated best in rollouts over 2080 random scenes.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
-from singulation_core.polygon import FloatArray
-from singulation_planner.candidates import Candidates, object_by_object
-from singulation_planner.directions import ascending, away, fan
+from singulation_planner.candidates import Candidates, through_centroid
+from singulation_planner.kernels import cluster_fans as fans
 from singulation_planner.kernels import scoring
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.policy import Task, policy
-from singulation_planner.scene import Scene
 from singulation_planner.selection import by_connectivity, by_removal
 
-_CLUSTERING = {
-    "seed_disc": scoring.FIXED_DISC,
-    "any_member": scoring.ANY_MEMBER,
-    "growing_disc": scoring.GROWING_DISC,
-}
+# Of clustering, case one, its direction, case two, path.
+_CODES = (
+    {"seed_disc": scoring.FIXED_DISC, "any_member": scoring.ANY_MEMBER, "growing_disc": scoring.GROWING_DISC},
+    {"both": fans.BOTH, "largest": fans.LARGEST, "more_than_three": fans.MORE_THAN_THREE, "never": fans.NEVER},
+    {
+        "away_from_all": fans.AWAY_FROM_ALL,
+        "away_from_cluster": fans.AWAY_FROM_CLUSTER,
+        "away_from_clusters": fans.AWAY_FROM_CLUSTERS,
+    },
+    {"distant_disks": fans.DISTANT_DISKS, "near_clusters": fans.NEAR_CLUSTERS},
+    {"ray": scoring.RAY, "line": scoring.LINE},
+)
 # How many are tried before the next object: the fifth best direction of one leads back into the clutter more often than
 # the best of the next (in rollouts 1 % of brute force).
 _PARTNERS, _GOOD = 2, 4
-_PATHS = {"ray": scoring.RAY, "line": scoring.LINE}
+_PORTION = 4  # objects ranked at once; then twice as many, and so on
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,56 +74,21 @@ class Options:
 @policy(Options)
 def rank(task: Task, options: Options) -> Iterator[Candidates]:
     """Objects by connectivity score; for each the best partners of case 1, then the best directions of case 2."""
-    return object_by_object(_fans(task.scene, options))
+    scene, rules = task.scene, _rules(options)
+    order = by_removal(scene) if options.push_object == "log_distance" else by_connectivity(scene)
+    others, begin, count = [], 0, _PORTION
+    while begin < len(order):
+        objects = np.array(order[begin : begin + count])
+        targets, directions, other_targets, other_directions = fans.ranked(
+            scene.centroids, scene.radii, scene.scale, objects, rules, _PARTNERS, _GOOD
+        )
+        yield through_centroid(targets, directions)
+        others.append(through_centroid(other_targets, other_directions))
+        begin, count = begin + count, 2 * count
+    yield from others
 
 
-def _fans(scene: Scene, options: Options) -> Iterator[tuple[int, FloatArray, FloatArray]]:
-    order = by_removal if options.push_object == "log_distance" else by_connectivity
-    for index in order(scene):
-        labels = scoring.cluster(scene.centroids, scene.radii, index, _CLUSTERING[options.clustering])
-        single = _single_directions(scene, index, labels, options)
-        if _pushes_two(labels, options):
-            both = _towards_partners(scene, index, labels, options)
-            good = np.concatenate((both[:_PARTNERS], single[:_GOOD]))
-            yield index, good, np.concatenate((both[_PARTNERS:], single[_GOOD:]))
-        else:
-            yield index, single[:_GOOD], single[_GOOD:]
-
-
-def _pushes_two(labels: IntArray, options: Options) -> bool:
-    """Whether case 1 applies; the push object is in cluster 0."""
-    sizes = np.bincount(labels)
-    if sizes[0] < 2 or options.case_one == "never":
-        return False
-    largest = len(sizes) > 1 and sizes[0] == sizes.max()
-    crowded = bool(sizes[0] > 3)
-    return {"both": largest and crowded, "largest": largest, "more_than_three": crowded}[options.case_one]
-
-
-def _towards_partners(scene: Scene, index: int, labels: IntArray, options: Options) -> FloatArray:
-    """(k, 2) directions to the other members of cluster 0, best first."""
-    relative = scene.centroids - scene.centroids[index]
-    partners = np.flatnonzero(labels == 0)
-    partners = partners[partners != index]
-    lengths = np.hypot(relative[partners, 0], relative[partners, 1])
-    directions = relative[partners] / lengths[:, None]
-    if options.case_one_direction == "away_from_clusters":
-        centres = [relative[labels == k].mean(axis=0) for k in range(1, int(labels.max()) + 1)]
-        scores = directions @ np.sum(centres, axis=0) if centres else directions @ relative.sum(axis=0)
-    else:
-        others = relative if options.case_one_direction == "away_from_all" else relative[labels == 0]
-        scores = directions @ others.sum(axis=0) - lengths  # without the partner itself
-    return directions[ascending(scores, scene.scale)]
-
-
-def _single_directions(scene: Scene, index: int, labels: IntArray, options: Options) -> FloatArray:
-    """(16, 2) directions, best first."""
-    directions = fan(away(scene, index))
-    path = _PATHS[options.path]
-    if options.case_two == "distant_disks":
-        sums = -scoring.path_distance_sums(scene.centroids, scene.radii, index, directions, path, 0.0)
-    else:
-        centres = [scene.centroids[labels == k].mean(axis=0) for k in range(1, int(labels.max()) + 1)]
-        points = np.array([scene.centroids[index], *centres])
-        sums = scoring.path_distance_sums(points, np.zeros(len(points)), 0, directions, path, 0.0)
-    return directions[ascending(sums, scene.scale)]
+@lru_cache(maxsize=16)
+def _rules(options: Options) -> IntArray:
+    names = (options.clustering, options.case_one, options.case_one_direction, options.case_two, options.path)
+    return np.array([codes[name] for codes, name in zip(_CODES, names, strict=True)])
