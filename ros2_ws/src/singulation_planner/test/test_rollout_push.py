@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -114,7 +115,7 @@ def test_simulations_that_fail_are_left_out_and_counted(monkeypatch):
 
     def counted(self, proposals):
         found = outcomes(self, proposals)
-        rejected.append(self.placer.rejected[NOT_SIMULATED])
+        rejected.append(Counter(self.placer.rejected)[NOT_SIMULATED])
         return found
 
     monkeypatch.setattr(CompiledWorld, "roll_out", blown_up)
@@ -134,3 +135,11 @@ def test_the_contact_mode_with_the_best_value_is_chosen():
     best = plan(scene, best_contact_mode=True, rollouts=120)
     assert best.contact_mode is max(gains, key=gains.__getitem__)
     assert best.expected_gain == max(gains.values())
+
+
+@pytest.mark.parametrize("budget", [0.0, 1e6])
+def test_blocks_with_room_enough_are_left_alone(budget):
+    """Spreading those too would gain distance for ever, while the two that touch stay together."""
+    scene = squares([(0.0, 0.0), (0.0201, 0.003), (0.06, 0.08), (-0.05, 0.09), (0.07, -0.06)])
+    push = plan(scene, objective="clearance", budget=budget)
+    assert push.target_id in (0, 1)

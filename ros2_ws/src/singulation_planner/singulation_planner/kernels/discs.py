@@ -169,6 +169,7 @@ def disc_scores(
     targets: IntArray,
     directions: FloatArray,
     paths: FloatArray,
+    counted: FloatArray,
     scale: float,
     width: float,
     weights: FloatArray,
@@ -183,6 +184,7 @@ def disc_scores(
         targets: (m,) the blocks that are pushed.
         directions: (m, 2) unit vectors of the pushes.
         paths: (m, k, 2) displacements of the targets on their way [m].
+        counted: (n,) 1 for blocks whose distances count, else 0.
         scale: mean bounding radius [m].
         width: gap beyond which nothing is gained [m].
         weights: of the change of the mean log distance and of the mean gap (both without unit).
@@ -209,6 +211,6 @@ def disc_scores(
             after[target, 1] = centroids[target, 1] + paths[c, step, 1] + deflection[1]
             _give_way(after, contact, planes, target, directions[c, 0], directions[c, 1], deflection)
             _spread(after, last, contact, planes, arms, gyrations, target, queue, rank, moved)
-        scores[c] = weights[0] * log_change(centroids, after, moved, _FLOOR * scale)
+        scores[c] = weights[0] * log_change(centroids, after, moved, counted, _FLOOR * scale)
         if weights[1] != 0.0:
             scores[c] += weights[1] * _clearance(centroids, after, gaps, moved, width)

@@ -105,9 +105,11 @@ def outcome_values(
     gaps: FloatArray,
     before: FloatArray,
     poses: FloatArray,
+    counted: FloatArray,
     width: float,
     floor: float,
     changes: FloatArray,
+    spreads: FloatArray,
     clearances: FloatArray,
 ) -> None:
     """What pushes changed.
@@ -119,25 +121,29 @@ def outcome_values(
         gaps: (n, n) before the pushes [m].
         before: (n, 3) x, y [m], turn [rad].
         poses: (m, n, 3) after each push; NaN gives NaN.
+        counted: (n,) 1 for blocks whose distances count for ``spreads``, else 0.
         width: gap beyond which nothing is gained [m]; 0: clearances are not asked for.
         floor: smallest distance that counts [m].
         changes: (m,) written: change of the mean log distance of all pairs.
+        spreads: (m,) written: the same of the pairs of blocks that count.
         clearances: (m,) written: mean over the blocks of the gap to the nearest other one, at most ``width``, less a
             share of what the gaps of all pairs lack to ``width`` (else nothing is gained by freeing a block of one of
             several neighbours); in units of ``width``. Each block that is free counts for a little more.
     """
     n = len(radii)
     corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n)
+    everyone = np.ones(n)
     for c in range(len(poses)):
         pose = poses[c]
-        changes[c], clearances[c] = np.nan, 0.0
+        changes[c], spreads[c], clearances[c] = np.nan, np.nan, 0.0
         if np.isnan(pose[0, 0]):
             continue
         for i in range(n):
             way = max(abs(pose[i, 0] - before[i, 0]), abs(pose[i, 1] - before[i, 1]))
             moved[i] = 1.0 if max(way, abs(pose[i, 2] - before[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0.0
             nearest[i] = width
-        changes[c] = log_change(before, pose, moved, floor)
+        changes[c] = log_change(before, pose, moved, everyone, floor)
+        spreads[c] = changes[c] if width == 0.0 else log_change(before, pose, moved, counted, floor)
         if width > 0.0:
             for i in range(n):
                 _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)

@@ -7,12 +7,13 @@ from singulation_core.polygon import FloatArray
 
 
 @compiled_part
-def log_change(before: FloatArray, after: FloatArray, moved: FloatArray, floor: float) -> float:
-    """Change of the mean log distance of all pairs.
+def log_change(before: FloatArray, after: FloatArray, moved: FloatArray, counted: FloatArray, floor: float) -> float:
+    """Change of the mean log distance of all pairs, as if only those of two ``counted`` blocks had changed.
 
     Args:
         before, after: (n, 2 or more) positions [m].
         moved: (n,) 0 where both are the same.
+        counted: (n,) 1 or 0.
         floor: smallest distance that counts [m].
     """
     n, total = len(before), 0.0
@@ -21,7 +22,7 @@ def log_change(before: FloatArray, after: FloatArray, moved: FloatArray, floor: 
             continue
         ratio = 1.0
         for j in range(n):
-            if j == i or (moved[j] != 0.0 and j < i):
+            if j == i or (moved[j] != 0.0 and j < i) or counted[i] == 0.0 or counted[j] == 0.0:
                 continue
             dx, dy = after[j, 0] - after[i, 0], after[j, 1] - after[i, 1]
             ex, ey = before[j, 0] - before[i, 0], before[j, 1] - before[i, 1]

@@ -68,10 +68,11 @@ def touching(
             low, high, height = _side(vertices, firsts[i], firsts[i + 1], nx, ny, _LEVEL * scale)
             left, right, depth = _side(vertices, firsts[j], firsts[j + 1], -nx, -ny, _LEVEL * scale)
             along = 0.5 * (max(low, -right) + min(high, -left))
-            x, y = nx * height - ny * along, ny * height + nx * along
             apart = (centroids[j, 0] - centroids[i, 0]) * nx + (centroids[j, 1] - centroids[i, 1]) * ny
             planes[i, j, 0], planes[i, j, 1], planes[i, j, 2] = nx, ny, apart - max(0.0, -depth - height)
             planes[j, i, 0], planes[j, i, 1], planes[j, i, 2] = -nx, -ny, planes[i, j, 2]
-            arms[i, j, 0], arms[i, j, 1] = x - centroids[j, 0], y - centroids[j, 1]
-            arms[j, i, 0], arms[j, i, 1] = x - centroids[i, 0], y - centroids[i, 1]
+            arms[i, j, 0] = -nx * depth - ny * along - centroids[j, 0]
+            arms[i, j, 1] = -ny * depth + nx * along - centroids[j, 1]
+            arms[j, i, 0] = nx * height - ny * along - centroids[i, 0]
+            arms[j, i, 1] = ny * height + nx * along - centroids[i, 1]
     return planes, arms, gyrations

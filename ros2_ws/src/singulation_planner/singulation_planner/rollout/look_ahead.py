@@ -43,7 +43,7 @@ class LookAhead:
         for k in np.flatnonzero(np.isfinite(values)).tolist():
             best = self._next(found.poses[k])
             if best is not None:
-                values[k] = best.value + self.judge.objective.weights[0] * found.changes[k]
+                values[k] = best.value + (found.changes[k] if self.judge.objective.weights[1] == 0.0 else 0.0)
         return Outcomes(values, found.changes, found.poses)
 
     def _next(self, poses: FloatArray) -> Best | None:

@@ -29,6 +29,8 @@ class Objective:
         gaps: (n, n) between the outlines [m].
         outlines: (v, 2) vertices around their centroids [m].
         planes, arms, gyrations: from ``touching``.
+        counted: (n,) 1 for blocks whose distances count in the change of s, else 0. Of a clearance, those that lack
+            it: spreading others that are free would go on for ever.
     """
 
     scene: Scene
@@ -39,6 +41,7 @@ class Objective:
     planes: FloatArray
     arms: FloatArray
     gyrations: FloatArray
+    counted: FloatArray
 
     def scores(self, objects: IntArray, directions: FloatArray, paths: FloatArray) -> FloatArray:
         """(m,) values of pushes if blocks did not turn and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
@@ -53,6 +56,7 @@ class Objective:
             objects,
             directions,
             paths,
+            self.counted,
             scene.scale,
             self.width,
             self.weights,
@@ -63,13 +67,24 @@ class Objective:
     def values(self, before: FloatArray, poses: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(m,) values, and (m,) changes of s, of pushes that lead from ``before`` (n, 3) to ``poses`` (m, n, 3)."""
         scene = self.scene
-        changes, clearances = np.empty(len(poses)), np.empty(len(poses))
+        changes, spreads, clearances = np.empty((3, len(poses)))
         width = self.width if self.weights[1] > 0.0 else 0.0
         floor = _FLOOR * scene.scale
         outcome_values(
-            self.outlines, scene.firsts, scene.radii, self.gaps, before, poses, width, floor, changes, clearances
+            self.outlines,
+            scene.firsts,
+            scene.radii,
+            self.gaps,
+            before,
+            poses,
+            self.counted,
+            width,
+            floor,
+            changes,
+            spreads,
+            clearances,
         )
-        return self.weights[0] * changes + self.weights[1] * clearances, changes
+        return self.weights[0] * spreads + self.weights[1] * clearances, changes
 
 
 def make_objective(scene: Scene, options: Options) -> Objective:
@@ -77,11 +92,13 @@ def make_objective(scene: Scene, options: Options) -> Objective:
     weights = np.array((_SPREAD, 1.0) if options.objective == "clearance" else (1.0, 0.0))
     owners: IntArray = np.repeat(np.arange(len(scene)), np.diff(scene.firsts))
     gaps, edges = all_gaps(scene.vertices, scene.firsts)
+    width = _RESERVE * (options.clearance_width or WIDTH * scene.scale)
     return Objective(
         scene,
         weights,
-        _RESERVE * (options.clearance_width or WIDTH * scene.scale),
+        width,
         gaps,
         scene.vertices - scene.centroids[owners],
         *touching(scene.centroids, scene.vertices, scene.firsts, edges, scene.scale),
+        (gaps.min(axis=1) < width if weights[1] > 0.0 else np.ones(len(scene))).astype(np.float64),
     )

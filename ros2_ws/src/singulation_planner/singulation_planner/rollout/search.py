@@ -11,7 +11,8 @@ from singulation_planner.placer import Placer
 from singulation_planner.rollout.judge import Judge, Outcomes
 from singulation_planner.rollout.proposals import Proposals, variations
 
-_SCREENED, _REFINED = 64, 32  # simulated in turn: the next ones by score, variations of the best
+_SCREENED, _REFINED = 24, 16  # simulated in turn: the next ones by score, variations of the best
+_SCREENED_FIRST = 64  # where the best of them are judged again: before that
 _BATCH, _BLOCKS = 8, 96  # simulations between two looks at the clock: at least, and times the number of blocks
 _REFINEMENTS = 4  # portions of the variations
 _NARROWER = 0.7  # shrinks the variations from batch to batch
@@ -81,8 +82,8 @@ class Search:
         """The same where the best of those screened are judged again."""
         yield ranked.part(slice(1)), self._screen, 1
         yield ranked.part(slice(1)), self._judge, self.final_cost
-        for at in range(1, len(ranked), _SCREENED):
-            for batch in self._batches(ranked.part(slice(at, at + _SCREENED))):
+        for at in range(1, len(ranked), _SCREENED_FIRST):
+            for batch in self._batches(ranked.part(slice(at, at + _SCREENED_FIRST))):
                 yield batch, self._screen, 1
             self.screened.sort(key=lambda one: one[:2])
             finalists, self.screened = self.screened[:_FINALISTS], self.screened[_FINALISTS:]
