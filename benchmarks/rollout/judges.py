@@ -32,16 +32,30 @@ def with_noise(scenario: Scenario, push: Push) -> float:
     """Mean s' - s over 12 worlds, the same for every planner, that perception could have seen as this scene.
 
     Blocks are shifted and turned, then moved apart where they overlap; friction differs; a pusher that would start on
-    a block is moved back until it is free.
+    a block is moved back until it is free and goes to the same end.
     """
+    return _mean_gain(scenario, push, _FURTHEST)
+
+
+def or_nothing(scenario: Scenario, push: Push) -> float:
+    """As ``with_noise``, but where the pusher would come down on a block nothing is gained."""
+    return _mean_gain(scenario, push, 0.0)
+
+
+JUDGES: Mapping[str, Judge] = {
+    "pymunk": in_pymunk,
+    "box2d": in_box2d,
+    "noise": with_noise,
+    "noise_or_nothing": or_nothing,
+}
+
+
+def _mean_gain(scenario: Scenario, push: Push, furthest: float) -> float:
     gains = []
     for world, friction in _true_worlds(scenario):
         physics = replace(PushPhysics.fine(), friction=friction)
-        gains.append(_gain_moved_back(world, push, physics, scenario.unit))
+        gains.append(_gain_moved_back(world, push, physics, scenario.unit, furthest))
     return float(np.mean(gains))
-
-
-JUDGES: Mapping[str, Judge] = {"pymunk": in_pymunk, "box2d": in_box2d, "noise": with_noise}
 
 
 def _gain(before: Arrangement, after: Arrangement) -> float:
@@ -97,8 +111,8 @@ def _overlap(first: FloatArray, second: FloatArray) -> FloatArray | None:
     return way
 
 
-def _gain_moved_back(world: Arrangement, push: Push, physics: PushPhysics, unit: float) -> float:
-    for step in range(round(_FURTHEST / _BACK) + 1):
+def _gain_moved_back(world: Arrangement, push: Push, physics: PushPhysics, unit: float, furthest: float) -> float:
+    for step in range(round(furthest / _BACK) + 1):
         moved = replace(push, start=push.start - step * _BACK * unit * push.direction)
         try:
             return _gain(world, simulate_push(world, moved, physics, SETTING.pusher))

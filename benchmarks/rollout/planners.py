@@ -1,12 +1,15 @@
 """What is compared: policies with their options."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from singulation_core.push_world import PushPhysics
+from singulation_planner.benchmark.generators import UNIT
+from singulation_planner.placement import Placement
 
 _NO_LIMIT = 10**9
+_WIDE = 0.05  # clearance of the start that allows for noise [bounding radii]; else a sixth of the tip radius, 0.017
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,6 +46,13 @@ def _worked(rollouts: int, **options: Any) -> Planner:
     return Planner(name, text, "rollout_push", {"budget": 1e6, "rollouts": rollouts, **options})
 
 
+def _at_a_distance(planner: Planner) -> Planner:
+    """The same with starts that keep the wider clearance."""
+    options = {**planner.options, "placement": Placement(clearance=_WIDE * UNIT)}
+    text = f"{planner.text}, start clearance {_WIDE:g}"
+    return replace(planner, name=f"{planner.name}_clearance{_WIDE:g}", text=text, options=options)
+
+
 BRUTE_FORCE = Planner("brute_force", "Brute Force", "brute_force")
 FAST_BRUTE_FORCE = Planner(
     "brute_force_compiled", "Brute Force in the compiled simulator", "brute_force", {"physics": PushPhysics.fast()}
@@ -75,5 +85,6 @@ ROBUST: Sequence[Planner] = (
     _worked(160),
     _worked(64 + 16 * 16 + 17, worlds=16),
     _rollout(26.0, worlds=16),
+    *map(_at_a_distance, (FAST_BRUTE_FORCE, _rollout(10.0), _worked(160), _rollout(26.0, worlds=16))),
     _rollout(100.0, worlds=64),
 )

@@ -45,6 +45,27 @@ def share_table(
     return table(header, rows)
 
 
+def hindsight(
+    store: Store,
+    scenes: Sequence[SceneRecipe],
+    planners: Sequence[Planner],
+    judges: Mapping[str, str],
+    reference: Planner = BRUTE_FORCE,
+) -> str:
+    """What the best of all planners' pushes gains, chosen for each scene by what the judge says: more than any choice
+    between them can.
+    """
+    text = ""
+    for judge, name in judges.items():
+        known = [one for one in scenes if (one.key, reference.name, judge) in store.gains]
+        rows = [one for one in planners if all((scene.key, one.name, judge) in store.gains for scene in known)]
+        if known and rows:
+            best = np.max([_gains(store, known, one, judge) for one in rows], axis=0)
+            share = 100.0 * best.mean() / _gains(store, known, reference, judge).mean()
+            text += f"\nThe best push of all rows, chosen for each scene in hindsight ({name}): {share:.1f} %\n"
+    return text
+
+
 def _gains(store: Store, scenes: Sequence[SceneRecipe], planner: Planner, judge: str) -> FloatArray:
     return np.array([store.gains[one.key, planner.name, judge] for one in scenes])
 
