@@ -51,6 +51,27 @@ def test_an_arrangement_survives_the_wire(outlines, sec, nanosec):
         assert after.confidence == pytest.approx(0.5)
 
 
+def test_a_vertex_that_arrives_twice_counts_once():
+    """Two vertices nearer to each other than float32 can tell apart."""
+    message = convert.object_to_msg(PlanarObject(1, polygon(5, 0.02, 0.1, 0.2, 0.3)))
+    expected = convert.object_from_msg(message).outline
+    for vertex in (4, 0):
+        points = list(message.outline.points)
+        message.outline.points = points[: vertex + 1] + points[vertex:]
+    assert len(message.outline.points) == 7
+    np.testing.assert_array_equal(convert.object_from_msg(message).outline, expected)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_an_outline_of_too_few_vertices_is_refused(count):
+    message = convert.object_to_msg(PlanarObject(1, polygon(5, 0.02, 0.1, 0.2, 0.3)))
+    whole, message.outline.points = message.outline.points, message.outline.points[:count]
+    with pytest.raises(InvalidInputError, match="object 1: shape"):
+        convert.object_from_msg(message)
+    message.outline.points = whole
+    assert len(convert.object_from_msg(message).outline) == 5
+
+
 @given(st.floats(0, 2**31 - 1))
 def test_a_stamp_survives_the_wire(seconds):
     assert convert.seconds_of(convert.stamp_of(seconds)) == pytest.approx(seconds, abs=1e-6)

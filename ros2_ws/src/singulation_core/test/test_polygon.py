@@ -14,6 +14,7 @@ from singulation_core.polygon import (
     contains,
     convex_hull,
     inward_half_planes,
+    measured_outline,
     separation,
     signed_area,
     validated_outline,
@@ -68,6 +69,16 @@ def test_convex_outlines_are_accepted_as_they_are_and_read_only(outline):
     checked = validated_outline(outline)
     assert np.array_equal(checked, outline)
     assert not checked.flags.writeable
+
+
+@given(outlines())
+def test_what_is_measured_at_once_is_what_is_measured_alone(outline):
+    measured = measured_outline(outline)
+    assert np.array_equal(measured.outline, outline)
+    assert measured.area == signed_area(outline)
+    assert np.array_equal(measured.centroid, area_centroid(outline))
+    assert measured.bounding_radius == bounding_radius(outline, measured.centroid)
+    assert not measured.centroid.flags.writeable
 
 
 @pytest.mark.parametrize(

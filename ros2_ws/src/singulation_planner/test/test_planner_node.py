@@ -109,12 +109,16 @@ def test_malformed_arrangements_are_refused_and_the_next_one_is_planned(node, da
     assert not pushes.messages
     objects.publish(fresh(node, clutter(4, 3)))
     pushes.wait()
-    wait_until(lambda: _planning(diagnostics, DiagnosticStatus.OK, "OK"), what="diagnostics")
+    shown = wait_until(lambda: _planning(diagnostics, DiagnosticStatus.OK, "OK"), what="diagnostics")
+    values = {pair.key: pair.value for pair in shown.values}
+    assert 0.0 < float(values["planning_time"]) < 10.0
+    assert values["policy"] == "cluster_push"
+    assert values["count INVALID_INPUT"] == "2"
 
 
 def _planning(mailbox, level, text):
     found = [one for message in mailbox.messages for one in message.status if one.name == "planner_node: planning"]
-    return bool(found) and found[-1].level == level and found[-1].message.startswith(text)
+    return found[-1] if found and found[-1].level == level and found[-1].message.startswith(text) else None
 
 
 def test_codes_of_the_planner_come_through(node):
