@@ -42,8 +42,8 @@ def stamp_of(seconds: float) -> Any:
 
 def point_to_msg(point: FloatArray) -> Any:
     """geometry_msgs/Point of a (2,) or (3,) point [m]; z = 0 if it has none."""
-    x, y, z = (*point, 0.0) if len(point) == 2 else point
-    return Point(x=float(x), y=float(y), z=float(z))
+    x, y, z = (*point.tolist(), 0.0) if len(point) == 2 else point.tolist()
+    return Point(x=x, y=y, z=z)
 
 
 def planar_point_from_msg(message: Any) -> FloatArray:
@@ -53,7 +53,7 @@ def planar_point_from_msg(message: Any) -> FloatArray:
 
 def object_to_msg(item: PlanarObject) -> Any:
     """singulation_msgs/PlanarObject of an object."""
-    corners = [Point32(x=float(x), y=float(y), z=0.0) for x, y in item.outline]
+    corners = [Point32(x=x, y=y, z=0.0) for x, y in item.outline.tolist()]
     return messages.PlanarObject(
         id=item.id,
         outline=Polygon(points=corners),

@@ -37,7 +37,7 @@ class Quiet(ManagedNode):
         if "stubborn" in sys.argv:
             raise RuntimeError("stubborn")
 
-sys.exit(run_node(Quiet))
+sys.exit(run_node(Quiet, threads=1 if "single" in sys.argv else 4))
 """
 
 
@@ -64,9 +64,11 @@ def start():
             process.communicate(timeout=10)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_deactivates_and_ends_it_without_a_traceback(start, number):
-    process = start("--autostart")
+@pytest.mark.parametrize(
+    ("number", "threads"), [(signal.SIGINT, "several"), (signal.SIGTERM, "several"), (signal.SIGINT, "single")]
+)
+def test_a_signal_deactivates_and_ends_it_without_a_traceback(start, number, threads):
+    process = start("--autostart", threads)
     assert process.stdout.readline() == "active\n"
     process.send_signal(number)
     output, errors = process.communicate(timeout=20)
