@@ -30,7 +30,7 @@ class Objective:
         outlines: (v, 2) vertices around their centroids [m].
         planes, arms, gyrations: from ``touching``.
         counted: (n,) 1 for blocks whose distances count in the change of s, else 0. Of a clearance, those that lack
-            it: spreading others that are free would go on for ever.
+            it: else blocks that are free long since would be spread for ever.
     """
 
     scene: Scene
