@@ -63,7 +63,9 @@ def modes(options: argparse.Namespace) -> str:
 
 def separation(options: argparse.Namespace) -> str:
     """Pushes until every gap is wider than 0.4 bounding radii."""
-    return separation_report(options.out, 0 if options.tables_only else options.separation, list(LIMITS), WAYS)
+    return separation_report(
+        options.out, 0 if options.tables_only else options.separation, list(LIMITS), WAYS[: options.ways]
+    )
 
 
 def simulators(options: argparse.Namespace) -> str:
@@ -126,6 +128,7 @@ def _options() -> argparse.Namespace:
     add("--validation-seeds", type=int, default=2, help="the same for the simulators (default: %(default)s)")
     add("--pushes", type=int, default=30, help="for each scene, for the simulators (default: %(default)s)")
     add("--separation", type=int, default=50, help="scenes for each number of blocks (default: %(default)s)")
+    add("--ways", type=int, default=len(WAYS), help="how many of the ways to separate (default: all %(default)s)")
     add("--only", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART", help=", ".join(PARTS))
     add("--out", type=Path, default=Path("bench_results/rollout"))
     add("--fast", action="store_true", help="compare with Brute Force in the compiled simulator, a tenth of the work")

@@ -1,6 +1,7 @@
 """How many pushes until all blocks are separated."""
 
 import json
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -36,6 +37,8 @@ def _clearance(**options: Any) -> Mapping[str, Any]:
 
 WAYS: Sequence[Way] = (
     Way("Rollout Push, clearance", "rollout_push", _clearance()),
+    Way("ClusterPush", "cluster_push"),
+    Way("Rollout Push, clearance, score alone", "rollout_push", _clearance(budget=0.0)),
     Way("Rollout Push, clearance, 400 rollouts", "rollout_push", _clearance(rollouts=400)),
     Way("Rollout Push, clearance, best contact mode", "rollout_push", _clearance(best_contact_mode=True, rollouts=480)),
     Way(
@@ -43,9 +46,7 @@ WAYS: Sequence[Way] = (
         "rollout_push",
         _clearance(look_ahead=2, rollouts=500, budget=1e5),
     ),
-    Way("Rollout Push, clearance, score alone", "rollout_push", _clearance(budget=0.0)),
     Way("Rollout Push, singulation distance", "rollout_push"),
-    Way("ClusterPush", "cluster_push"),
 )
 
 
@@ -84,6 +85,8 @@ def separation_report(
     done = {(one["way"], one["scene"]) for one in known}
     with path.open("a", encoding="utf-8") as file:
         for number in range(scenes):
+            if number % 5 == 0:
+                print(f"scene {number + 1} of {scenes}", file=sys.stderr)
             for way in ways:
                 for n in counts:
                     recipe = SceneRecipe(SETTING.generator, n, number % len(groups()), first_seed + number)
