@@ -64,14 +64,7 @@ def blocks_of(
     maps = face_maps(faces, chosen)
     rings = face_rings(seen.xyz, *rims(maps), faces.count[chosen], noise, view.camera)
     every = FaceBlocks(seen, faces, maps, rings, view, parameters, noise)
-    found: list[FoundBlock] = []
-    for k, suspects in enumerate(_suspects(faces, chosen, noise)):
-        if every.is_sliver(k):
-            dropped["sliver"] += 1
-            continue
-        blocks = every.blocks(k, suspects)
-        dropped["shapeless"] += not blocks
-        found += blocks
+    found = every.found(_suspects(faces, chosen, noise), dropped)
     found, dropped["stacked"] = settled(_with_size_doubts(found, parameters.max_extent), band)
     objects = [
         PlanarObject(i, one.outline, one.height, one.count, min(1.0, one.confidence)) for i, one in enumerate(found)

@@ -11,7 +11,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled
 from singulation_perception.raster import Raster
 
-_POINTS = 12_000  # looked at; a plane fitted to them is good to about 1/50 of the noise
+_POINTS = 8_000  # looked at; a plane fitted to them is good to about 1/40 of the noise
 _FEWEST = 100
 _METRES_LIMIT = 30.0  # [m] no sensor of this kind reaches farther
 _EVERYWHERE = (-np.inf, np.inf, -np.inf, np.inf)
@@ -69,7 +69,7 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
 
 def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: int) -> IntArray:
     """Limits for every row from those of the sampled rows beside it, widened by ``margin``."""
-    beside = np.pad(spans, ((1, 1), (0, 0)), mode="edge")
+    beside = np.concatenate((spans[:1], spans, spans[-1:]))
     first = np.minimum(np.minimum(beside[:-2, 0], beside[1:-1, 0]), beside[2:, 0]) - margin
     stop = np.maximum(np.maximum(beside[:-2, 1], beside[1:-1, 1]), beside[2:, 1]) + margin
     first = first.clip(0, width)

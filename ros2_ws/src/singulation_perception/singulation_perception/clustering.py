@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from singulation_core import InvalidInputError
-from singulation_perception.grid_columns import bounds, columns_of, link_cells
+from singulation_perception.cell_links import labelled, link_cells
+from singulation_perception.grid_columns import bounds, columns_of
 
 IntArray = NDArray[np.int32]
 
@@ -39,35 +40,38 @@ def euclidean_clusters(points: ArrayLike, tolerance: float, min_size: int = 1, m
         raise InvalidInputError(f"tolerance: {tolerance} m, need a finite positive length")
     if not (1 <= min_size <= max_size):
         raise InvalidInputError(f"min_size, max_size: {min_size}, {max_size}; need 1 <= min <= max")
-    components, kept = _components(cloud, tolerance)
-    if kept is None:
-        return _ranked(components, min_size, max_size)
+    if not len(cloud):
+        return np.empty(0, dtype=np.int32)
+    low, high, finite = bounds(cloud)
+    if finite:
+        return _clusters(cloud, tolerance, low, high, (min_size, max_size))
+    kept = np.isfinite(cloud).all(axis=1)
     labels = np.full(len(cloud), -1, dtype=np.int32)
-    labels[kept] = _ranked(components, min_size, max_size)
+    if kept.any():
+        cloud = cloud[kept]
+        low, high, _ = bounds(cloud)
+        labels[kept] = _clusters(cloud, tolerance, low, high, (min_size, max_size))
     return labels
 
 
-def _components(cloud: NDArray[np.float32], tolerance: float) -> tuple[IntArray, NDArray[np.bool_] | None]:
-    """Component number of every finite point, and which points are finite, None if all are."""
-    if not len(cloud):
-        return np.empty(0, dtype=np.int32), None
-    kept = None
-    low, high, finite = bounds(cloud)
-    if not finite:
-        kept = np.isfinite(cloud).all(axis=1)
-        cloud = cloud[kept]
-        if not len(cloud):
-            return np.empty(0, dtype=np.int32), kept
-        low, high, _ = bounds(cloud)
-    columns = columns_of(cloud, tolerance, low, high)
-    return np.asarray(link_cells(*columns, np.float32(tolerance * tolerance))), kept
+def _clusters(
+    cloud: NDArray[np.float32],
+    tolerance: float,
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    sizes: tuple[int, int],
+) -> IntArray:
+    """Labels of finite points between ``low`` and ``high``."""
+    points, depth, places, starts, neighbours = columns_of(cloud, tolerance, low, high)
+    component, first, count = link_cells(points, depth, starts, neighbours, np.float32(tolerance * tolerance))
+    rank = _ranks(np.bincount(component, np.diff(first), count), *sizes)
+    return np.asarray(labelled(places, first, rank[component]))
 
 
-def _ranked(components: IntArray, min_size: int, max_size: int) -> IntArray:
-    """Components renumbered by decreasing size; those of a wrong size become -1."""
-    sizes = np.bincount(components)
-    order = np.argsort(-sizes, kind="stable")
-    order = order[(sizes[order] >= min_size) & (sizes[order] <= max_size)]
-    numbers = np.full(len(sizes), -1, dtype=np.int32)
+def _ranks(points: NDArray[np.float64], min_size: int, max_size: int) -> IntArray:
+    """Numbers of components by decreasing size; -1 for those of a wrong size."""
+    order = np.argsort(-points, kind="stable")
+    order = order[(points[order] >= min_size) & (points[order] <= max_size)]
+    numbers = np.full(len(points), -1, dtype=np.int32)
     numbers[order] = np.arange(len(order), dtype=np.int32)
-    return np.asarray(numbers[components])
+    return numbers

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_part
 
 _USUAL_SUPPORT = 0.9  # share of the outline with points; corners never have them
 _USUAL_FILL = 0.8
@@ -52,7 +52,7 @@ class Evidence:
         return float(value)
 
 
-@compiled
+@compiled_part
 def supported_share(outline: FloatArray, ring: FloatArray, reach: float, pitch: float) -> float:
     """Share of the length of an outline with points of a ring within ``reach`` [m]."""
     supported, total = 0, 0

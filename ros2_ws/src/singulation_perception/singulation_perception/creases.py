@@ -19,6 +19,7 @@ _PAIRS = np.random.default_rng(3).random(
 )  # lines through two of them that are tried, as shares of their number
 _WIDTH = 0.8  # pitches on either side of a line within which points belong to it
 _SHARE = 0.22  # of the places on a line that are missing, from which it is looked at more closely
+_LOOKED_AT = 4_000  # points of a face that are asked for a step
 _UNEVEN = 1.3  # a face of two heights scatters that much more than others
 
 
@@ -88,19 +89,21 @@ def _best_line(places: FloatArray, pairs: IntArray, width: float) -> tuple[Float
 def step_line(image: FaceImage, noise: float) -> FloatArray | None:
     """Normal and offset (3,) of the line that parts a face of two heights, None if it has one height."""
     chosen = image.point[image.point >= 0]
-    points = image.xyz[chosen[:: max(1, len(chosen) // 4000)]].astype(np.float64)
-    heights = points[:, 2] - np.median(points[:, 2])
-    if not (float(heights.std()) > _UNEVEN * noise):
+    points = image.xyz[chosen[:: max(1, len(chosen) // _LOOKED_AT)]].T.astype(np.float64)
+    if not (float(points[2].std()) > _UNEVEN * noise):
         return None
-    upper = np.where(heights > 0.5 * (np.quantile(heights, 0.1) + np.quantile(heights, 0.9)), 1.0, -1.0)
-    middle = points[:, :2].mean(axis=0)
-    slope = np.linalg.lstsq(points[:, :2] - middle, upper - upper.mean(), rcond=None)[0]
+    ordered = np.sort(points[2])
+    upper = np.where(points[2] > 0.5 * (ordered[len(ordered) // 10] + ordered[-1 - len(ordered) // 10]), 1.0, -1.0)
+    upper -= upper.mean()
+    places = points[:2] - points[:2].mean(axis=1, keepdims=True)
+    (xx, xy), (_, yy) = (places @ places.T).tolist()
+    x, y = (places @ upper).tolist()
+    slope = np.array((yy * x - xy * y, xx * y - xy * x))  # least squares but for its length
     length = float(np.hypot(*slope))
     if not (length > 0.0):
         return None
     normal = slope / length
-    position = points[:, :2] @ normal
+    position = normal @ points[:2]
     order = np.argsort(position)
-    difference = np.cumsum(upper[order] - upper.mean())
-    cut = int(np.abs(difference).argmax())
+    cut = int(np.abs(np.cumsum(upper[order])).argmax())
     return np.array((normal[0], normal[1], position[order[cut]]))

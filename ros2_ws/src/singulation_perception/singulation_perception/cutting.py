@@ -5,17 +5,20 @@ import math
 import numpy as np
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
-from singulation_perception.rings import Scale, concave_area, hull_indices, least_width, ring_area
+from singulation_perception.rings import Scale, concave_area, least_width, ring_area
 
 _STRAY = 6.0  # pitches from the ends of a cut within which points of the other piece are left over
 _FEWEST = 8  # points of a piece
 _SMALLEST = 40.0  # square pitches, of a piece
-_PER_AREA = 1.0 / 0.003  # [1/m] concave outline of 3 mm depth costs its length
+PER_AREA = 1.0 / 0.003  # [1/m] concave outline of 3 mm depth costs its length
+_CUT, _LENGTH = 0.003, 0.35  # [m] cost of every cut, and per metre of it
+_THIN, _THIN_WIDTH = 0.02, 0.025  # [m] cost of a piece without width, and the width that costs nothing
 
 
-@compiled
+@compiled_part
 def seam_line(
     ring: FloatArray,
     cut: FloatArray,
@@ -112,20 +115,11 @@ def both_pieces(
 @compiled
 def concave_cost(ring: FloatArray, roughness: float) -> float:
     """What a ring costs that is left as it is [m]: 0 if it is convex but for its roughness."""
-    return concave_area(ring, hull_indices(ring), roughness) * _PER_AREA
+    return concave_area(ring, hull_indices(ring), roughness) * PER_AREA
 
 
-@compiled
-def estimated(
-    ring: FloatArray,
-    cuts: FloatArray,
-    index: IntArray,
-    scale: Scale,
-    base: float,
-    per_length: float,
-    thin: float,
-    thin_width: float,
-) -> FloatArray:
+@compiled_part
+def estimated(ring: FloatArray, cuts: FloatArray, index: IntArray, scale: Scale) -> FloatArray:
     """(c, 3): what the seam, what thin pieces, and what both and the remaining concave parts cost.
 
     Judged from the corners of the ring only.
@@ -143,10 +137,10 @@ def estimated(
                 break
             hull = hull_indices(part)
             width = min(width, least_width(part, hull))
-            left += _corner_pockets(part, hull, scale.roughness) * _PER_AREA
+            left += _corner_pockets(part, hull, scale.roughness) * PER_AREA
         if width >= 0.0:
-            costs[k, 0] = base + per_length * cuts[k, 2] + cuts[k, 3]
-            costs[k, 1] = thin * max(0.0, 1.0 - width / thin_width)
+            costs[k, 0] = _CUT + _LENGTH * cuts[k, 2] + cuts[k, 3]
+            costs[k, 1] = _THIN * max(0.0, 1.0 - width / _THIN_WIDTH)
             costs[k, 2] = costs[k, 0] + costs[k, 1] + left
     return costs
 

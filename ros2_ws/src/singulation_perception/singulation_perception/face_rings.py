@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
-from singulation_perception.rings import concave_area, hull_indices, least_width
+from singulation_perception.rings import concave_area, least_width
 
 _SMALLEST_AREA = 1e-9  # [m^2] what has less is a line
 _ROUGH_PITCHES, _ROUGH_NOISE = 2.5, 8.0
@@ -28,8 +29,6 @@ class FaceRings:
         width: (k,) least width [m].
         thickness: (k,) twice the area over the length of the ring [m].
         concave: (k,) area between ring and hull, roughness apart [m^2].
-        corners: (h,) numbers, within their ring, of the corners of its hull, counter-clockwise.
-        first_corner: (k + 1,) first of each ring in ``corners``.
     """
 
     points: FloatArray
@@ -40,16 +39,10 @@ class FaceRings:
     width: FloatArray
     thickness: FloatArray
     concave: FloatArray
-    corners: IntArray
-    first_corner: IntArray
 
     def ring(self, k: int) -> FloatArray:
         """(m, 2) points of ring k, a view."""
         return self.points[self.begin[k] : self.begin[k + 1]]
-
-    def hull(self, k: int) -> IntArray:
-        """Which points of ring k are corners of its hull."""
-        return self.corners[self.first_corner[k] : self.first_corner[k + 1]]
 
 
 def face_rings(
@@ -108,17 +101,11 @@ def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple
 @compiled
 def _measures(
     points: FloatArray, begin: IntArray, area: FloatArray, roughness: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, IntArray, IntArray]:
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     width, thickness, concave = np.zeros(len(area)), np.zeros(len(area)), np.zeros(len(area))
-    corners, first_corner = np.empty(len(points), dtype=np.int32), np.zeros(len(area) + 1, dtype=np.int32)
-    count = 0
     for k in range(len(area)):
         ring = points[begin[k] : begin[k + 1]]
         hull = hull_indices(ring)
-        for corner in hull:
-            corners[count] = corner
-            count += 1
-        first_corner[k + 1] = count
         if len(hull) > 2:
             length = 0.0
             for i in range(len(ring)):
@@ -127,4 +114,4 @@ def _measures(
             width[k] = least_width(ring, hull)
             thickness[k] = 2.0 * area[k] / length
             concave[k] = concave_area(ring, hull, roughness[k])
-    return width, thickness, concave, corners, first_corner
+    return width, thickness, concave

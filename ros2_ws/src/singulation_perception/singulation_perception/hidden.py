@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
 from singulation_perception.raster import Raster
-from singulation_perception.rings import hull_indices, pockets
+from singulation_perception.rings import pockets
 
 _COVERED = 0.5  # share of a pocket filled by something taller that may lie on the block
 _SEEN_LOWER = 0.3  # share of a pocket that is seen to be lower, from which on it is empty

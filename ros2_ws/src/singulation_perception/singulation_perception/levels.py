@@ -10,6 +10,9 @@ Points = NDArray[np.float32]
 
 _MOST = 12  # levels of one surface
 _BINS = 8  # of the histogram in the window of a peak, which is half as wide as the range of a face
+_ENOUGH, _SPARSEST = 4_000, 4  # points of a surface that show its levels; at least every fourth run is looked at
+_PARTS = 4  # histograms filled in turn: neighbours have one height, and a count must not wait for the one before
+_LAST_PART = _PARTS - 1
 _MASK = 6  # bins on either side of a peak in which there is no other
 _PROMINENCE = 2.5  # a wall is as dense on both sides of a window as in it
 _TAIL, _TAIL_REACH = 0.04, 32  # share of a peak that its own tails can hold, and bins up to which they count
@@ -46,21 +49,27 @@ def levels_of(
     """
     order, begin = _runs_by_surface(surface, len(sizes))
     width = band / _BINS
-    histogram = np.zeros(int(highest / width) + 2, dtype=np.int32)
+    bins = int(highest / width) + 2
+    parts = np.zeros(_PARTS * bins, dtype=np.int32)
+    histogram = parts[:bins]
     per_width = 1.0 / width
     first = np.zeros(len(sizes) + 1, dtype=np.int32)
     levels = np.empty((_MOST * len(sizes) + 1, 2), dtype=np.float64)
     count = 0
     for one in range(len(sizes)):
         if wanted[one]:
-            for i in range(len(histogram)):
-                histogram[i] = 0
-            for k in range(begin[one], begin[one + 1]):
+            for i in range(len(parts)):
+                parts[i] = 0
+            every = min(max(sizes[one] // _ENOUGH, 1), _SPARSEST)
+            for k in range(begin[one], begin[one + 1], every):
                 run = order[k]
                 for i in range(runs[run, FIRST], runs[run, FIRST] + runs[run, STOP] - runs[run, START]):
-                    histogram[int(xyz[i, 2] * per_width)] += 1
+                    parts[np.uintp(int(xyz[i, 2] * per_width) + (i & _LAST_PART) * bins)] += 1
+            for i in range(bins):
+                for part in range(1, _PARTS):
+                    parts[i] += parts[part * bins + i]
             found = levels[count : count + _MOST]
-            count += _limits(found, _peaks(histogram, width, min_size, found), band, apart)
+            count += _limits(found, _peaks(histogram, width, min_size / every, found), band, apart)
         first[one + 1] = count
     return first, levels[:count]
 
@@ -81,7 +90,7 @@ def _runs_by_surface(surface: IntArray, count: int) -> tuple[IntArray, IntArray]
 
 
 @compiled_part
-def _peaks(histogram: IntArray, width: float, min_size: int, levels: NDArray[np.float64]) -> int:
+def _peaks(histogram: IntArray, width: float, min_size: float, levels: NDArray[np.float64]) -> int:
     """Writes the heights of the levels of a histogram and says how many there are."""
     free = np.empty(len(histogram), dtype=np.int32)  # 0 near a peak that was looked at
     for i in range(len(histogram)):

@@ -16,6 +16,7 @@ Heights = NDArray[np.float32]
 ROW, START, STOP, FIRST = 0, 1, 2, 3  # columns of a table of runs
 
 _BLOCK = 32  # points of a row that are passed over together if none of them is high enough
+_ROOM = 800_000  # points at first: usual scenes need less, and fresh memory costs more than looking at the points
 _TOO_FAR = 100.0  # [m] above the table: an infinite or absurd point
 
 
@@ -57,14 +58,18 @@ def object_points(
     """
     limits = np.array(workspace or (-np.inf, np.inf, -np.inf, np.inf), dtype=np.float32)
     pose = table_from_camera[:3].astype(np.float32)
-    size = int((columns[:, 1] - columns[:, 0]).sum())
-    xyz = np.empty((size, 3), dtype=np.float32)  # untouched pages cost nothing
-    runs = np.empty((size // 2 + len(columns), 4), dtype=np.int32)
-    spans = np.empty((len(runs), 2), dtype=np.float32)
-    count, run_count, outside = _collect(
-        cloud, columns, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
-    )
-    return ObjectPoints(xyz[:count], runs[:run_count], spans[:run_count], outside)
+    most = int((columns[:, 1] - columns[:, 0]).sum())
+    sizes = min(most, _ROOM), min(most // 2 + len(columns), _ROOM // 8)
+    while True:
+        xyz = np.empty((sizes[0], 3), dtype=np.float32)
+        runs = np.empty((sizes[1], 4), dtype=np.int32)
+        spans = np.empty((sizes[1], 2), dtype=np.float32)
+        count, run_count, outside = _collect(
+            cloud, columns, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
+        )
+        if count >= 0:
+            return ObjectPoints(xyz[:count], runs[:run_count], spans[:run_count], outside)
+        sizes = most, most // 2 + len(columns)
 
 
 @compiled_sums
@@ -79,6 +84,7 @@ def _collect(
     runs: IntArray,
     spans: NDArray[np.float32],
 ) -> tuple[int, int, int]:
+    """Numbers of points and runs written, and of points outside; -1 points if there is no room for all."""
     numbers, point_step = cloud.numbers, np.uintp(cloud.point_step)
     # Numbers of their own: array elements would be read again after every point that is written.
     ax, bx, cx, dx = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
@@ -90,6 +96,8 @@ def _collect(
     for row in range(cloud.height):
         left, width = int(columns[row, 0]), int(columns[row, 1] - columns[row, 0])
         start = np.uintp(row * cloud.row_step + left * cloud.point_step)
+        if count + width > len(xyz) or run + width // 2 + 2 > len(runs):
+            return -1, 0, 0
         _heights(numbers, start, point_step, pose, levels, width)
         last = -2
         for begin in range(0, width, _BLOCK):

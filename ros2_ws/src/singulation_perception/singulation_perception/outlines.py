@@ -1,52 +1,89 @@
-"""From the rim of a top face to a convex polygon on the table: hull, Douglas-Peucker, edges fitted to the rim."""
+"""From the rims of top faces to convex polygons on the table: hull, Douglas-Peucker, edges fitted to the rim."""
 
-import cv2
+from dataclasses import dataclass
+
 import numpy as np
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.confidence import supported_share
 from singulation_perception.edge_fit import corners_of, refitted
+from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
-from singulation_perception.rings import Scale
+from singulation_perception.rings import Scale, concave_area
+from singulation_perception.simplified import simplified
 
 _ROUNDS = 4
 _SETTLED = 1e-6  # [m] corners that move less are where they belong
 _MARGIN = 2.0  # pitches from a corner in which points may belong to the other edge
 
 
-def outline_of(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) -> FloatArray | None:
-    """Convex polygon of a face.
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """Convex polygons of n rings.
 
     Args:
-        ring: (m, 2) rim of the face, counter-clockwise [m].
-        hull: numbers of its points that are corners of its hull, counter-clockwise.
-        tolerance: of Douglas-Peucker; no finer detail is kept [m].
-        scale: of the cloud.
-
-    Returns:
-        (k, 2), counter-clockwise; None if the points have no area.
+        corners: (m, 2) of all of them, counter-clockwise [m].
+        first: (n + 1,) first corner of each; fewer than three where a ring has no area.
+        supported: (n,) share of the length of each outline with points of its ring near it.
+        concave: (n,) area between each ring and its hull, roughness apart [m^2].
     """
-    if len(hull) < 3:
-        return None
-    polygon = simplified(ring[hull], tolerance)
-    if len(polygon) < 3:
-        return None
-    corners, good = _fitted(ring, polygon, tolerance, scale)
-    return corners if good else None
+
+    corners: FloatArray
+    first: IntArray
+    supported: FloatArray
+    concave: FloatArray
+
+    def outline(self, k: int) -> FloatArray | None:
+        """(k, 2) outline of ring k [m], None if it has no area."""
+        begin, end = self.first[k], self.first[k + 1]
+        return self.corners[begin:end] if end - begin >= 3 else None
 
 
-def simplified(ring: FloatArray, tolerance: float) -> FloatArray:
-    """Douglas-Peucker on a closed line, in metres."""
-    origin = ring[0]  # float32 keeps micrometres only near zero
-    corners = cv2.approxPolyDP((ring - origin).astype(np.float32)[:, None, :], tolerance, True)
-    return np.asarray(corners[:, 0, :].astype(np.float64) + origin)
+def outlines_of(rings: list[FloatArray], measures: list[tuple[float, float, float, float]]) -> Outlines:
+    """Fits a convex polygon to each ring; one call for all, because calls cost more than the fits.
+
+    Args:
+        rings: (m, 2) rims of faces or of parts of them, counter-clockwise [m].
+        measures: of each: tolerance of Douglas-Peucker, no finer detail is kept, and the three lengths of its
+            ``Scale`` [m].
+    """
+    begin = np.zeros(len(rings) + 1, dtype=np.int32)
+    np.cumsum([len(ring) for ring in rings], out=begin[1:])
+    points = np.concatenate(rings) if rings else np.empty((0, 2))
+    return Outlines(*_outlines(points, begin, np.array(measures, dtype=np.float64).reshape(-1, 4)))
 
 
 @compiled
-def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scale) -> tuple[FloatArray, bool]:
-    """Refits edges, drops corners finer than the tolerance, and grows the result."""
-    corners = polygon
-    grown, good = polygon, True
+def _outlines(
+    points: FloatArray, begin: IntArray, measures: FloatArray
+) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
+    corners, first = np.empty((len(points), 2)), np.zeros(len(begin), dtype=np.int32)
+    supported, concave = np.zeros(len(measures)), np.zeros(len(measures))
+    count = 0
+    for k in range(len(measures)):
+        ring = points[begin[k] : begin[k + 1]]
+        scale = Scale(measures[k, 1], measures[k, 2], measures[k, 3])
+        hull = hull_indices(ring)
+        if len(hull) >= 3:
+            outline = _fitted(ring, hull, measures[k, 0], scale)
+            for i in range(len(outline)):
+                corners[count, 0], corners[count, 1] = outline[i, 0], outline[i, 1]
+                count += 1
+            concave[k] = concave_area(ring, hull, scale.roughness)
+            supported[k] = supported_share(outline, ring, scale.roughness + scale.growth, scale.pitch)
+        first[k + 1] = count
+    return corners[:count], first, supported, concave
+
+
+@compiled_part
+def _fitted(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) -> FloatArray:
+    """Refits edges, drops corners finer than the tolerance, and grows the result; the hull as it is if nothing fits."""
+    corners = _taken(ring, hull)
+    corners = _taken(corners, simplified(corners, tolerance))
+    grown = corners
+    if len(corners) < 3:
+        return grown
     for round_ in range(_ROUNDS):
         reach = tolerance if round_ == 0 else min(tolerance, 1.2 * scale.roughness)
         lines = refitted(ring, corners, reach, _MARGIN * scale.pitch)
@@ -59,7 +96,15 @@ def _fitted(ring: FloatArray, polygon: FloatArray, tolerance: float, scale: Scal
         grown, _ = corners_of(lines, scale.growth)
         if settled:
             break
-    return grown, good and len(grown) >= 3
+    return grown
+
+
+@compiled_part
+def _taken(points: FloatArray, numbers: IntArray) -> FloatArray:
+    taken = np.empty((len(numbers), 2))
+    for k in range(len(numbers)):
+        taken[k, 0], taken[k, 1] = points[numbers[k], 0], points[numbers[k], 1]
+    return taken
 
 
 @compiled_plain

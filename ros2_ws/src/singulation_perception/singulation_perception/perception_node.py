@@ -34,6 +34,7 @@ from singulation_perception.latest_worker import LatestWorker
 from singulation_perception.perception_diagnostics import first_words, report_clouds, report_table
 from singulation_perception.perception_settings import PerceptionSettings
 from singulation_perception.stamp_order import StampOrder
+from singulation_perception.warming import must_compile
 
 _REPORT_PERIOD = 1.0  # s
 _STOP_TIMEOUT = 10.0  # s; the largest accepted cloud takes far less
@@ -63,7 +64,8 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
     def configure(self) -> None:
         """Compile the library, listen to TF if needed, announce the results."""
         self._camera.prepare(self.settings.camera_pose_source)
-        self.get_logger().info("warming up; the first time ever this compiles and takes up to 20 s")
+        if must_compile():
+            self.get_logger().info("compiling, since nothing compiled is kept yet; this takes some 20 s, once")
         started = time.monotonic()
         warm_up()
         self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")

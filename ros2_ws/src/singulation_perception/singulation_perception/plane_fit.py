@@ -1,11 +1,14 @@
 """Robust fit of a plane to points: the best of many three-point planes, then least squares on what lies near it."""
 
+import math
+
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled, compiled_sums
+from singulation_perception.jit import compiled_sums
 
-_SCORED = 2_000  # points that score a hypothesis
+_SCORED = 1_000  # points that score a hypothesis
+_LEAST_CROSS = 1e-12  # [m^2] product of two vectors that span a plane
 _HOLDS = 0.5  # share of the points near a plane that no other can have
 _ROUNDS = 4
 _SETTLED = 0.02  # relative change of the noise that ends the fit
@@ -23,33 +26,44 @@ def best_plane(points: FloatArray, hypotheses: int, reach: float, first: FloatAr
     Returns:
         (4,) unit normal and offset, distance = normal . point + offset; None if the points lie on one line.
     """
-    random = np.random.default_rng(7)  # equal clouds give equal planes
-    scored = np.ascontiguousarray(points[random.integers(0, len(points), _SCORED)].T)
-    if first is not None and np.count_nonzero(np.abs(first[:3] @ scored + first[3]) < reach) > _HOLDS * _SCORED:
+    scored = np.ascontiguousarray(points[:: max(1, len(points) // _SCORED)].T)
+    if first is not None and np.count_nonzero(np.abs(first[:3] @ scored + first[3]) < reach) > _HOLDS * scored.shape[1]:
         return first
-    corners = points[random.integers(0, len(points), (hypotheses, 3))]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1)
-    usable = lengths > 1e-12
-    normals = normals[usable] / lengths[usable, None]
-    planes = np.column_stack((normals, -(normals * corners[usable, 0]).sum(axis=1)))
-    if not len(planes):
-        return None
-    return np.asarray(planes[_best(planes, scored, reach)])
+    plane, found = _best(scored, hypotheses, reach)
+    return np.asarray(plane) if found else None
 
 
-@compiled
-def _best(planes: FloatArray, points: FloatArray, reach: float) -> int:
-    """Plane with most of the (3, n) points within ``reach``."""
-    best, most = 0, -1
-    for k in range(len(planes)):
-        a, b, c, d = planes[k, 0], planes[k, 1], planes[k, 2], planes[k, 3]
+@compiled_sums
+def _best(points: FloatArray, hypotheses: int, reach: float) -> tuple[FloatArray, bool]:
+    """Plane through three of the (3, n) points with most of them within ``reach``; false if all lie on one line.
+
+    The choice repeats itself (a linear congruential generator; Knuth, MMIX): equal clouds give equal planes.
+    """
+    best, most = np.zeros(4), -1
+    size = points.shape[1]
+    state = np.uint64(7)
+    chosen = np.empty(3, dtype=np.int64)
+    for _ in range(hypotheses):
+        for corner in range(3):
+            state = state * np.uint64(6364136223846793005) + np.uint64(1442695040888963407)
+            chosen[corner] = np.int64((state >> np.uint64(33)) % np.uint64(size))
+        i, j, k = chosen[0], chosen[1], chosen[2]
+        x, y, z = points[0, i], points[1, i], points[2, i]
+        ux, uy, uz = points[0, j] - x, points[1, j] - y, points[2, j] - z
+        vx, vy, vz = points[0, k] - x, points[1, k] - y, points[2, k] - z
+        a, b, c = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        length = math.sqrt(a * a + b * b + c * c)
+        if not (length > _LEAST_CROSS):
+            continue
+        a, b, c = a / length, b / length, c / length
+        d = -(a * x + b * y + c * z)
         near = 0
-        for i in range(points.shape[1]):
+        for i in range(size):
             near += abs(points[0, i] * a + points[1, i] * b + points[2, i] * c + d) < reach
         if near > most:
-            best, most = k, near
-    return best
+            most = near
+            best[0], best[1], best[2], best[3] = a, b, c, d
+    return best, most >= 0
 
 
 def refined_plane(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatArray, float, float]:
@@ -63,17 +77,22 @@ def refined_plane(points: FloatArray, plane: FloatArray, reach: float) -> tuple[
     Returns:
         the plane (4,), robust standard deviation of the points about it and the reach that follows from it [m].
     """
+    across = np.ascontiguousarray(points.T)
+    some = across[:, :: max(1, len(points) // 4000)]
     noise = reach
     for _ in range(_ROUNDS):
-        centre, moments, count = _moments(points, plane, reach)
+        centre, moments, count = _moments(across, plane, reach)
         if count < 10:
             break
         normal = np.linalg.eigh(moments)[1][:, 0]
         normal = normal if normal @ plane[:3] > 0.0 else -normal
         plane = np.append(normal, -normal @ centre)
-        some = np.abs(points[:: max(1, len(points) // 4000)] @ normal + plane[3])
-        near = some[some <= reach]
-        before, noise = noise, 1.4826 * float(np.median(near)) if len(near) else reach
+        distance = np.abs(normal @ some + plane[3])
+        near = distance[distance <= reach]
+        before, noise = (
+            noise,
+            1.4826 * float(np.partition(near, len(near) // 2)[len(near) // 2]) if len(near) else reach,
+        )
         reach = max(3.5 * noise, 1e-6)
         if abs(noise - before) < _SETTLED * noise:
             break
@@ -82,30 +101,30 @@ def refined_plane(points: FloatArray, plane: FloatArray, reach: float) -> tuple[
 
 @compiled_sums
 def _moments(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatArray, FloatArray, int]:
-    """Mean, (3, 3) second moments about it, and number of the points within ``reach``."""
-    total, products = np.zeros(3), np.zeros((3, 3))
-    count = 0
-    for i in range(len(points)):
-        if abs(points[i, 0] * plane[0] + points[i, 1] * plane[1] + points[i, 2] * plane[2] + plane[3]) <= reach:
-            count += 1
-            for j in range(3):
-                total[j] += points[i, j] - points[0, j]  # relative, to keep the digits
-                for k in range(j, 3):
-                    products[j, k] += (points[i, j] - points[0, j]) * (points[i, k] - points[0, k])
-    if count == 0:
-        return total, products, count
-    for j in range(3):
-        total[j] /= count
-    for j in range(3):
-        for k in range(j, 3):
-            products[j, k] = products[j, k] / count - total[j] * total[k]
-            products[k, j] = products[j, k]
-    for j in range(3):
-        total[j] += points[0, j]
-    return total, products, count
+    """Mean, (3, 3) second moments about it, and number of the (3, n) points within ``reach``."""
+    a, b, c, d = plane[0], plane[1], plane[2], plane[3]
+    x0, y0, z0 = points[0, 0], points[1, 0], points[2, 0]  # relative to a point, to keep the digits
+    count, x, y, z = 0.0, 0.0, 0.0, 0.0
+    xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(points.shape[1]):
+        px, py, pz = points[0, i], points[1, i], points[2, i]
+        near = 1.0 if abs(px * a + py * b + pz * c + d) <= reach else 0.0
+        px, py, pz = (px - x0) * near, (py - y0) * near, (pz - z0) * near
+        count, x, y, z = count + near, x + px, y + py, z + pz
+        xx, xy, xz = xx + px * px, xy + px * py, xz + px * pz
+        yy, yz, zz = yy + py * py, yz + py * pz, zz + pz * pz
+    mean, moments = np.zeros(3), np.zeros((3, 3))
+    if count > 0.0:
+        x, y, z = x / count, y / count, z / count
+        mean[0], mean[1], mean[2] = x + x0, y + y0, z + z0
+        moments[0, 0], moments[1, 1], moments[2, 2] = xx / count - x * x, yy / count - y * y, zz / count - z * z
+        moments[0, 1] = moments[1, 0] = xy / count - x * y
+        moments[0, 2] = moments[2, 0] = xz / count - x * z
+        moments[1, 2] = moments[2, 1] = yz / count - y * z
+    return mean, moments, int(count)
 
 
 def plane_spread(points: FloatArray, plane: FloatArray, reach: float) -> tuple[int, float]:
     """How many points lie within ``reach`` of the plane, and their standard deviation across its narrow direction."""
-    _, moments, count = _moments(points, plane, reach)
+    _, moments, count = _moments(np.ascontiguousarray(points.T), plane, reach)
     return int(count), float(np.sqrt(max(np.linalg.eigvalsh(moments)[1], 0.0)))

@@ -43,64 +43,6 @@ def ring_area(ring: FloatArray) -> float:
     return 0.5 * total
 
 
-@compiled
-def hull_indices(ring: FloatArray) -> IntArray:
-    """Which points of a ring are corners of its convex hull, counter-clockwise (Andrew's monotone chain)."""
-    size = len(ring)
-    order = _sorted_by_place(ring)
-    chain = np.empty(2 * size + 2, dtype=np.int32)
-    length = 0
-    for half in range(2):
-        base = length
-        for k in range(size):
-            point = order[k] if half == 0 else order[size - 1 - k]
-            while length >= base + 2 and _turn(ring, chain[length - 2], chain[length - 1], point) <= 0.0:
-                length -= 1
-            chain[length] = point
-            length += 1
-        length -= 1  # the end of one half starts the other
-    hull = np.empty(max(length, 1), dtype=np.int32)
-    for k in range(len(hull)):
-        hull[k] = chain[k]
-    return hull
-
-
-@compiled_part
-def _sorted_by_place(ring: FloatArray) -> IntArray:
-    """Numbers of the points by x, then y. Merge sort: NumPy's would take longer to compile than all of this file."""
-    size = len(ring)
-    order, spare = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
-    for i in range(size):
-        order[i] = i
-    step = 1
-    while step < size:
-        for low in range(0, size, 2 * step):
-            middle, high = min(low + step, size), min(low + 2 * step, size)
-            a, b = low, middle
-            for at in range(low, high):
-                if a < middle and (b >= high or not _before(ring, order[b], order[a])):
-                    spare[at] = order[a]
-                    a += 1
-                else:
-                    spare[at] = order[b]
-                    b += 1
-        order, spare = spare, order
-        step *= 2
-    return order
-
-
-@compiled_plain
-def _before(ring: FloatArray, a: int, b: int) -> bool:
-    if ring[a, 0] != ring[b, 0]:
-        return ring[a, 0] < ring[b, 0]
-    return ring[a, 1] < ring[b, 1]
-
-
-@compiled_plain
-def _turn(ring: FloatArray, a: int, b: int, c: int) -> float:
-    return (ring[b, 0] - ring[a, 0]) * (ring[c, 1] - ring[a, 1]) - (ring[b, 1] - ring[a, 1]) * (ring[c, 0] - ring[a, 0])
-
-
 @compiled_part
 def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     """Area between a ring and its hull, of the pockets deeper than the roughness of the rim [m^2]."""

@@ -6,17 +6,14 @@ two corners are flush, at an ordinary corner or in the middle of an edge.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import fitted_line
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
-from singulation_perception.rings import Scale
 
-_CORNER_TOLERANCE = 0.72  # of the roughness, for Douglas-Peucker when corners are sought
 _REFLEX = -0.1  # sine of the turn
 _TRIM = 2  # points at either end of an edge that are left out of its line
 _SHORTEST_EDGE = 3.0  # pitches, of an edge that is continued
@@ -25,69 +22,26 @@ _NECK = 12.0  # pitches: two reflex corners that near are joined whatever their 
 _NEAR = 20  # points along the ring within which two corners are neighbours
 _ALIGNED = 0.12  # sine up to which an edge at the far end counts as part of the seam
 
-
-@dataclass(frozen=True)
-class SeamCosts:
-    """What a cut costs, in metres of concave outline that it must explain.
-
-    Args:
-        cut: every cut.
-        length: per metre of the cut.
-        open_end: the cut ends in the middle of an edge.
-        corner_end: the cut ends at a corner that is not reflex.
-        bend: times the sine between the cut and the best edge at its far end.
-        thin: a piece without width; falls to 0 at ``thin_width`` [m].
-        neck: joining two near reflex corners across.
-    """
-
-    cut: float = 0.003
-    length: float = 0.35
-    open_end: float = 0.006
-    corner_end: float = 0.002
-    bend: float = 0.02
-    thin: float = 0.02
-    thin_width: float = 0.025
-    neck: float = 0.002
+# What a cut costs, in metres of concave outline that it must explain.
+_OPEN_END = 0.006  # it ends in the middle of an edge
+_CORNER_END = 0.002  # it ends at a corner that is not reflex
+_BEND = 0.02  # times the sine between the cut and the best edge at its far end
+_NECK_CUT = 0.002  # joining two near reflex corners across
 
 
-@dataclass(frozen=True, eq=False)
-class Corners:
-    """Corners of a ring and the edges between them.
+@compiled_part
+def edges_between(ring: FloatArray, index: IntArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Edges between the corners of a ring.
 
     Args:
+        ring: (m, 2) [m].
         index: (k,) point of each corner; edge i runs from corner i to the next.
-        lines: (k, 3) outward normal and offset of each edge.
-        length: (k,) of each edge [m].
-        fitted: (k,) whether the edge has enough points for a line of its own.
+
+    Returns:
+        outward normal and offset of each edge (k, 3), its length (k,) [m], and whether it has enough points for a line
+        of its own (k,).
     """
-
-    index: IntArray
-    lines: FloatArray
-    length: FloatArray
-    fitted: IntArray
-
-
-def corner_tolerance(scale: Scale) -> float:
-    """Tolerance of Douglas-Peucker for the polygon whose corners may be ends of seams [m]."""
-    return _CORNER_TOLERANCE * scale.roughness
-
-
-def corners_of_ring(ring: FloatArray, polygon: FloatArray) -> Corners:
-    """Lines fitted to the ring between the corners of its simplified polygon (k, 2)."""
-    return Corners(*_edges(ring, polygon))
-
-
-@compiled
-def _edges(ring: FloatArray, polygon: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, IntArray]:
-    count = len(polygon)
-    index = np.empty(count, dtype=np.int32)
-    for k in range(count):
-        best = np.inf
-        for i in range(len(ring)):
-            x, y = ring[i, 0] - polygon[k, 0], ring[i, 1] - polygon[k, 1]
-            distance = x * x + y * y
-            if distance < best:
-                best, index[k] = distance, i
+    count = len(index)
     lines, length, fitted = np.empty((count, 3)), np.empty(count), np.zeros(count, dtype=np.int32)
     points = np.empty_like(ring)
     for k in range(count):
@@ -105,21 +59,11 @@ def _edges(ring: FloatArray, polygon: FloatArray) -> tuple[IntArray, FloatArray,
             if nx * y - ny * x > 0.97:
                 lines[k, 0], lines[k, 1], lines[k, 2] = nx, ny, offset
                 fitted[k] = 1
-    return index, lines, length, fitted
+    return lines, length, fitted
 
 
-@compiled
-def candidates(
-    ring: FloatArray,
-    index: IntArray,
-    lines: FloatArray,
-    length: FloatArray,
-    pitch: float,
-    open_end: float,
-    corner_end: float,
-    bend: float,
-    neck: float,
-) -> FloatArray:
+@compiled_part
+def candidates(ring: FloatArray, index: IntArray, lines: FloatArray, length: FloatArray, pitch: float) -> FloatArray:
     """Possible cuts, (c, 6): first and last point, length [m], penalty [m], and the edges it continues, -1 for none."""
     count = len(index)
     turn = np.empty(count)
@@ -137,11 +81,11 @@ def candidates(
             if hit < 0:
                 continue
             end, other, sine = _end(ring, index, lines, turn, k, edge, sense, reach, hit, pitch)
-            penalty = open_end
+            penalty = _OPEN_END
             if end >= 0:
                 hit = np.int64(index[end])
                 reach = _distance(ring, np.int64(index[k]), hit)
-                penalty = bend * min(sine, 0.3) if turn[end] < _REFLEX else corner_end
+                penalty = _BEND * min(sine, 0.3) if turn[end] < _REFLEX else _CORNER_END
             aligned = end >= 0 and turn[end] < _REFLEX and sine < _ALIGNED
             _write(found, np.int64(size), np.int64(index[k]), hit, reach, penalty, edge, other if aligned else none)
             size += 1
@@ -149,7 +93,7 @@ def candidates(
             across = _distance(ring, np.int64(index[k]), np.int64(index[other]))
             apart = _apart(np.int64(index[k]), np.int64(index[other]), len(ring))
             if turn[other] < _REFLEX and across < _NECK * pitch and apart > _NEAR:
-                _write(found, np.int64(size), np.int64(index[k]), np.int64(index[other]), across, neck, none, none)
+                _write(found, np.int64(size), np.int64(index[k]), np.int64(index[other]), across, _NECK_CUT, none, none)
                 size += 1
     return found[:size]
 

@@ -6,30 +6,15 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.creases import groove_line, step_line
-from singulation_perception.cutting import (
-    along,
-    both_pieces,
-    chord,
-    concave_cost,
-    estimated,
-    left_concave,
-    seam_line,
-)
+from singulation_perception.cutting import along, both_pieces, chord, concave_cost, left_concave
 from singulation_perception.face_image import FaceImage
-from singulation_perception.outlines import simplified
+from singulation_perception.promising_cuts import promising_cuts
 from singulation_perception.rings import Scale
-from singulation_perception.seams import SeamCosts, candidates, corner_tolerance, corners_of_ring
 from singulation_perception.traces import trace_strength
 
-_COSTS = SeamCosts()
 _BRANCHES = (3, 2, 2, 1)  # cuts that are followed up, by depth
 CONVEX = 0.005  # [m] cost of a ring that is left alone
-
-
 _PROOF = 0.6  # strength of a trace that is cut whatever the outline says
-_SEEN = 0.8  # share of a cut's cost that a trace beyond doubt saves
-
-_Cut = tuple[float, FloatArray, tuple[FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True)
@@ -78,9 +63,13 @@ def split(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, depth:
     if depth == len(_BRANCHES) or uncut.cost < CONVEX:
         return uncut
     best, second, chosen = uncut, np.inf, None
-    for cost, cut, parts in _best_cuts(ring, scale, image, noise, _BRANCHES[depth]):
+    follow = _BRANCHES[depth]
+    for _, cost, first, last, *line in promising_cuts(ring, scale, image, noise, 2 * follow)[:follow].tolist():
         if cost >= best.cost:
             break
+        i, j = int(first), int(last)
+        cut = ring[[i, j]]
+        parts = both_pieces(ring, i, j, tuple(line), scale)
         pieces = [split(part, scale, image, noise, depth + 1) for part in parts]
         total = cost + sum(piece.cost for piece in pieces)
         if total < best.cost:
@@ -101,36 +90,12 @@ def split_seen(
         if line is None or depth == len(_BRANCHES):
             continue
         i, j = chord(ring, line[0], line[1], line[2])
-        if i < 0 or trace_strength(image, ring[i], ring[j], scale.pitch, suspects.noise) < _PROOF:
+        if i < 0 or trace_strength(image, *ring[i], *ring[j], scale.pitch, suspects.noise) < _PROOF:
             continue
         parts = both_pieces(ring, i, j, along(ring, i, j, line[0], line[1], line[2]), scale)
         if left_concave(*parts, scale) < CONVEX + concave_cost(ring, scale.roughness):
             return tuple(piece for part in parts for piece in split_seen(part, scale, image, suspects, depth + 1))
     return (ring,)
-
-
-def _best_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, count: int) -> list[_Cut]:
-    """Cost, ends and pieces of the most promising cuts."""
-    polygon = simplified(ring, corner_tolerance(scale))
-    if len(polygon) < 4:
-        return []
-    corners = corners_of_ring(ring, polygon)
-    cuts = candidates(
-        ring, corners.index, corners.lines, corners.length, scale.pitch,
-        _COSTS.open_end, _COSTS.corner_end, _COSTS.bend, _COSTS.neck,
-    )  # fmt: skip
-    costs = estimated(ring, cuts, corners.index, scale, _COSTS.cut, _COSTS.length, _COSTS.thin, _COSTS.thin_width)
-    found: list[tuple[float, _Cut]] = []
-    for k in np.argsort(costs[:, 2])[: 2 * count]:
-        if costs[k, 2] < np.inf:
-            line = seam_line(ring, cuts[k], corners.index, corners.lines, corners.fitted, scale)
-            i, j = int(cuts[k, 0]), int(cuts[k, 1])
-            parts = both_pieces(ring, i, j, line, scale)
-            doubt = 1.0 - _SEEN * trace_strength(image, ring[i], ring[j], scale.pitch, noise)
-            cost = float(costs[k, 0] * doubt + costs[k, 1])
-            found.append((cost + float(left_concave(*parts, scale)), (cost, ring[[i, j]], parts)))
-    found.sort(key=lambda one: one[0])
-    return [cut for total, cut in found[:count] if total < np.inf]
 
 
 def _joined(cost: float, cut: FloatArray, rival: float, parts: list[Split]) -> Split:

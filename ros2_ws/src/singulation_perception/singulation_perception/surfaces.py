@@ -65,7 +65,7 @@ def surfaces_of(seen: ObjectPoints, step: float, cluster: IntArray | None = None
         cluster: (m,) of each run, if only runs of one cluster may be linked.
     """
     kind = np.zeros(len(seen.runs), dtype=np.int32) if cluster is None else cluster
-    surface, count = connected_runs(seen.xyz, seen.runs, kind, step)
+    surface, count = connected_runs(seen.xyz, seen.runs, seen.spans, kind, step)
     return Surfaces(surface, *_sizes(seen.runs, seen.spans, surface, count))
 
 
@@ -87,15 +87,20 @@ def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, 
         seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, apart, highest, min_size
     )
     runs, level = _runs_on_levels(seen.xyz, seen.runs, seen.spans, surfaces.of_run, first, levels)
-    face, count = connected_runs(seen.xyz, runs, level, np.inf)
+    face, count = connected_runs(seen.xyz, runs, seen.spans, level, np.inf)
     counts, heights, scatter, holes, boxes, level_of_face = _face_table(seen.xyz, runs, face, level, count)
     surface = np.searchsorted(first, level_of_face, side="right").astype(np.int32) - 1
     return Faces(runs, face, surface, np.isfinite(levels[level_of_face, 0]), counts, heights, scatter, holes, boxes)
 
 
 @compiled
-def connected_runs(xyz: Points, runs: IntArray, kind: IntArray, step: float) -> tuple[IntArray, int]:
-    """Number of the connected set of each run: runs of one kind, above one another, at most ``step`` apart."""
+def connected_runs(
+    xyz: Points, runs: IntArray, spans: NDArray[np.float32], kind: IntArray, step: float
+) -> tuple[IntArray, int]:
+    """Number of the connected set of each run: runs of one kind, above one another, at most ``step`` apart.
+
+    ``spans`` are not looked at if ``step`` is infinite.
+    """
     parent = single_sets(len(runs))
     above, row_start = 0, 0
     for run in range(len(runs)):
@@ -106,15 +111,17 @@ def connected_runs(xyz: Points, runs: IntArray, kind: IntArray, step: float) -> 
             above += 1
         other = above
         while other < row_start and runs[other, START] < runs[run, STOP]:
-            if kind[other] == kind[run] and _meet(xyz, runs, other, run, step):
+            if kind[other] == kind[run] and _meet(xyz, runs, spans, other, run, step):
                 unite(parent, np.int64(other), np.int64(run))
             other += 1
     return numbered_roots(parent)
 
 
 @compiled_plain
-def _meet(xyz: Points, runs: IntArray, one: int, two: int, step: float) -> bool:
+def _meet(xyz: Points, runs: IntArray, spans: NDArray[np.float32], one: int, two: int, step: float) -> bool:
     """Whether two runs in neighbouring rows have neighbours that differ by at most ``step``."""
+    if step == np.inf or max(spans[one, 1], spans[two, 1]) - min(spans[one, 0], spans[two, 0]) <= step:
+        return True
     begin, end = max(runs[one, START], runs[two, START]), min(runs[one, STOP], runs[two, STOP])
     for column in range(begin, end):
         a = xyz[runs[one, FIRST] + column - runs[one, START], 2]

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 
 _ENDS = 4.0  # pitches at either end of the seam, where its corners disturb
 _NEAR, _FAR = 3.5, 7.5  # pitches from the seam at which heights are compared
@@ -16,24 +15,25 @@ _STEP, _STEP_IN_NOISE = 0.00015, 2.5  # [m] step that is proof; warp and print g
 _SURE = 4.0  # standard errors
 
 
-def trace_strength(image: FaceImage, start: FloatArray, end: FloatArray, pitch: float, noise: float) -> float:
+@compiled
+def trace_strength(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float, noise: float) -> float:
     """0 if nothing of a seam is seen between two points of a face, up to 1 if a groove or step is beyond doubt.
 
     Args:
         image: the face.
-        start: (2,) [m].
-        end: (2,) [m].
+        ax, ay: one of them [m].
+        bx, by: the other [m].
         pitch: distance of neighbouring points [m].
         noise: of the heights [m].
     """
-    missing, step, error = _along(image, start[0], start[1], end[0], end[1], pitch)
+    missing, step, error = _along(image, ax, ay, bx, by, pitch)
     groove = (missing - _NONE) / (_CLEAR - _NONE)
     proof = max(_STEP, _STEP_IN_NOISE * noise)
     edge = (abs(step) - _SURE * error - 0.3 * proof) / (0.7 * proof)
-    return float(min(1.0, max(0.0, groove, edge)))
+    return min(1.0, max(0.0, groove, edge))
 
 
-@compiled
+@compiled_part
 def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float) -> tuple[float, float, float]:
     """Share of places on the line without points, beyond what is missing beside it; step [m] and its standard error.
 

@@ -1,9 +1,13 @@
 """Compiling everything before the first cloud arrives."""
 
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
 
+from singulation_perception.compiled_caches import are_empty
 from singulation_perception.segmentation import segment_cloud
+from singulation_perception.surfaces import connected_runs
 
 _PITCH = 0.001
 
@@ -16,6 +20,11 @@ def warm_up() -> None:
     image = _every_kind_of_block()
     for cloud in (image, image.reshape(-1, 3)):
         _ = segment_cloud(cloud).labels
+
+
+def must_compile() -> bool:
+    """Whether the next warm-up compiles, because nothing compiled is kept yet."""
+    return are_empty(Path(connected_runs.stats.cache_path))
 
 
 def _every_kind_of_block() -> NDArray[np.float32]:

@@ -1,0 +1,33 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from singulation_core.polygon import convex_hull, signed_area
+from singulation_perception.hull import hull_indices
+
+
+@given(st.integers(0, 10_000), st.integers(1, 60), st.sampled_from([4, 30, 1_000_000]))
+@settings(max_examples=60, deadline=None)
+def test_hull_has_the_corners_of_the_monotone_chain_in_their_order(seed, count, places):
+    points = np.random.default_rng(seed).integers(0, places, (count, 2)).astype(np.float64)
+    hull = points[hull_indices(points)]
+    expected = convex_hull(points)
+    if len(expected) < 3:
+        assert len(hull) == len(expected)
+        return
+    assert len(np.unique(hull, axis=0)) == len(hull)
+    corners = hull[[any((point == expected).all(axis=1)) for point in hull]]  # others lie on an edge
+    start = int(np.flatnonzero((corners == expected[0]).all(axis=1))[0])
+    np.testing.assert_array_equal(np.roll(corners, -start, axis=0), expected)
+    assert signed_area(hull) == pytest.approx(signed_area(expected))
+
+
+@pytest.mark.parametrize("points", [np.empty((0, 2)), np.ones((5, 2))], ids=["none", "all in one place"])
+def test_points_without_extent_have_no_more_than_one_corner(points):
+    assert len(hull_indices(points)) == min(1, len(points))
+
+
+def test_line_has_its_two_ends():
+    line = np.column_stack((np.arange(9.0), 2.0 * np.arange(9.0)))
+    assert sorted(hull_indices(line)) == [0, 8]
