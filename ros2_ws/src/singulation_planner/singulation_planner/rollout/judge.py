@@ -18,6 +18,8 @@ from singulation_planner.rollout.proposals import Proposals
 # direction [rad], friction, and of a block's density as a share of the mean.
 _SHIFT, _TURN, _FRICTION, _DENSITY = 0.05, 0.05, 0.1, 0.1
 _LEAST_FRICTION = 0.05
+_FRICTIONS = 0.9, 1.1  # of a second look at a push: a little less and a little more
+_SAMPLED = 1 + len(_FRICTIONS)  # first of the sampled worlds; before it the one seen and those of the second look
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +55,18 @@ class Judge:
         """In the world as it was seen. Pushes whose simulation fails are counted as rejected."""
         return self._simulate(proposals, 0)
 
+    def least(self, proposals: Proposals, first: Outcomes) -> Outcomes:
+        """Of the outcomes ``first`` of one proposal and those of a second look the one with the least value.
+
+        Where they differ much, the push stands on a knife's edge: its block may slip to one side or to the other. A
+        search that simulates many pushes finds such ones, and what it expects of them does not happen.
+        """
+        looks = [first, *(self._simulate(proposals, 1 + k) for k in range(len(_FRICTIONS)))]
+        return min(looks, key=lambda one: float(np.nan_to_num(one.values[0], nan=-np.inf)))
+
     def in_all_worlds(self, proposals: Proposals) -> Outcomes:
         """Means over the sampled worlds in which the simulation does not fail; the poses are NaN."""
-        found = [self._simulate(proposals, 1 + number) for number in range(self.count)]
+        found = [self._simulate(proposals, _SAMPLED + number) for number in range(self.count)]
         values = np.array([one.values for one in found])
         # A push that cannot even begin in some worlds gains nothing there.
         failed = np.isnan(values)
@@ -95,7 +106,9 @@ class Judge:
             example = self.placer.push(target, scene.centroids[target], np.array((1.0, 0.0)))
             footprint = pusher_footprint(example, self.placer.geometry)
             seen = CompiledWorld(self.arrangement, footprint, self.physics, scene.scale)
-            self._worlds[width] = [seen, *(self._sampled(seen, k) for k in range(self.count if self.count > 1 else 0))]
+            again = [seen.rubbing(friction) for friction in _FRICTIONS]
+            sampled = [self._sampled(seen, k) for k in range(self.count if self.count > 1 else 0)]
+            self._worlds[width] = [seen, *again, *sampled]
         return self._worlds[width]
 
     def _sampled(self, seen: CompiledWorld, number: int) -> CompiledWorld:

@@ -17,7 +17,8 @@ class Options:
             ``clearance_width`` all around, which is what a gripper needs.
         budget: processor time for planning [ms]; 0: no simulation, the answer is that of the score. Otherwise at least
             one push is simulated. Where the budget ends the search, the answer depends on the speed of the machine.
-        rollouts: simulated pushes at most. Unlike the budget, it gives the same push on every machine.
+        rollouts: simulated pushes at most, second looks at the best ones not counted. Unlike the budget, it gives the
+            same push on every machine.
         clearance_width: gap that is wide enough [m]; 0: 0.4 mean bounding radii.
         worlds: in how many sampled worlds (poses, friction, density) the best pushes are judged; 1: in the one seen.
         look_ahead: how many pushes ahead the best ones are judged by what can be reached; 1: greedy.

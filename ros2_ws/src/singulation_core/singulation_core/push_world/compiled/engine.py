@@ -90,6 +90,15 @@ class CompiledWorld:
         measure_overlaps(made._shapes, made._state, made._origins)
         return made
 
+    def rubbing(self, share: float) -> "CompiledWorld":
+        """The same world with friction multiplied by ``share``.
+
+        It shares its working memory with this world: never use both at the same time.
+        """
+        made = copy.copy(self)
+        made._numbers = self._numbers._replace(friction=share * self._numbers.friction)
+        return made
+
     def roll_out(self, starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, IntArray]:
         """Outcomes of pushes. Calls from several threads need a world each; the interpreter is free meanwhile.
 
