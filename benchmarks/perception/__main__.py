@@ -22,7 +22,7 @@ from benchmarks.perception.pcl_rival import PclRival
 from benchmarks.perception.pictures import draw_recorded, draw_synthetic
 from benchmarks.perception.quality import gap_settings, run_quality, separate_settings, touching_settings
 from benchmarks.perception.replay_memory import run_replay_memory
-from benchmarks.perception.speed import run_speed
+from benchmarks.perception.speed import RESOLUTIONS, run_speed
 from benchmarks.perception.startup import run_startup
 from benchmarks.perception.tables import Table
 
@@ -33,7 +33,7 @@ Part = Callable[[argparse.Namespace, PclRival | None], Sequence[Table]]
 
 def speed(options: argparse.Namespace, pcl: PclRival | None) -> Sequence[Table]:
     """The whole way."""
-    return run_speed(options.scenes or 1, options.rounds, pcl)
+    return run_speed(options.scenes or 1, options.rounds, pcl, not options.without_open3d, options.resolutions)
 
 
 def clusters(options: argparse.Namespace, pcl: PclRival | None) -> Sequence[Table]:
@@ -41,7 +41,7 @@ def clusters(options: argparse.Namespace, pcl: PclRival | None) -> Sequence[Tabl
     if pcl is None:
         print("clusters: left out without PCL, there is nothing to compare with", file=sys.stderr)
         return []
-    return run_clusters(options.scenes or 2, options.rounds, pcl, options.clouds)
+    return run_clusters(options.scenes or 2, options.rounds, pcl, options.clouds, options.resolutions)
 
 
 def separate(options: argparse.Namespace, _: PclRival | None) -> Sequence[Table]:
@@ -121,6 +121,8 @@ def _options() -> argparse.Namespace:
     add("--clouds", nargs="+", type=Path, default=[], metavar="FILE", help="recorded clouds (PCD, PLY) to look at too")
     add("--gigabytes", type=int, default=4, help="largest bag of the part replay (default %(default)s)")
     add("--without-pcl", action="store_true", help="no rival in C++, on machines without libpcl-dev")
+    add("--without-open3d", action="store_true", help="part speed without Open3D, which takes longest")
+    add("--resolutions", nargs="+", choices=list(RESOLUTIONS), default=list(RESOLUTIONS), help="of speed, clusters")
     add("--out", type=Path, default=Path("bench_results/perception"), help="folder (default %(default)s)")
     return parser.parse_args()
 

@@ -28,7 +28,7 @@ _COLUMNS = ["points of", "points", "tolerance mm", "clusters", "ours ms", "PCL m
 _RATIOS = ["times ours: PCL", "PCL sorted", "Open3D", "as PCL", "as Open3D"]
 
 
-def run_clusters(count: int, rounds: int, pcl: PclRival, clouds: list[Path]) -> list[Table]:
+def run_clusters(count: int, rounds: int, pcl: PclRival, clouds: list[Path], resolutions: list[str]) -> list[Table]:
     """On synthetic scenes, and on the given cloud files."""
     notes = [
         "Processor milliseconds, median over the rounds, smallest cluster 1 point. PCL: building the search tree and "
@@ -36,9 +36,9 @@ def run_clusters(count: int, rounds: int, pcl: PclRival, clouds: list[Path]) -> 
         "`as PCL`: every cluster has the same members."
     ]
     synthetic = Table("clusters", "Euclidean clusters", [*_COLUMNS, *_RATIOS], notes=notes)
-    for name, sensor in RESOLUTIONS.items():
+    for name in resolutions:
         for number in range(count):
-            points = above_table(*_scene_points(make_scene(SEED + number, sensor)))
+            points = above_table(*_scene_points(make_scene(SEED + number, RESOLUTIONS[name])))
             named = f"{name}, scene {number}"
             synthetic.rows.extend(_row(named, points, one, rounds, pcl) for one in TOLERANCES)
     tables = [synthetic]

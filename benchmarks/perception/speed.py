@@ -67,17 +67,18 @@ def speed_scenes(sensor: Sensor, count: int) -> dict[str, list[Scene]]:
     }
 
 
-def run_speed(count: int, rounds: int, pcl: PclRival | None) -> list[Table]:
-    """Processor time and what was found, for both resolutions."""
+def run_speed(count: int, rounds: int, pcl: PclRival | None, with_open3d: bool, resolutions: list[str]) -> list[Table]:
+    """Processor time and what was found, for the chosen resolutions; ours alone if there is no rival."""
     warm_up()
     tables = []
-    for name, sensor in RESOLUTIONS.items():
+    for name in resolutions:
+        sensor = RESOLUTIONS[name]
         measured: dict[tuple[str, str], list[tuple[Answer, Scene]]] = defaultdict(list)
         scenes = speed_scenes(sensor, count)
         for turn in range(rounds):
             for kind, members in scenes.items():
                 for scene in members:
-                    _take_turns(turn, kind, scene, pcl, measured)
+                    _take_turns(turn, kind, scene, _rivals(scene, pcl, with_open3d), measured)
         tables.append(_table(name, measured))
     return tables
 
@@ -86,22 +87,26 @@ def _take_turns(
     turn: int,
     kind: str,
     scene: Scene,
-    pcl: PclRival | None,
+    rivals: dict[str, Contestant],
     measured: dict[tuple[str, str], list[tuple[Answer, Scene]]],
 ) -> None:
     """Ours before each rival, so that both see the machine in the same state; every cloud comes out of cold caches."""
-    for name, contestant in _rivals(scene, pcl).items():
+    if not rivals:
+        measured[kind, OURS].append((_ours(scene), scene))
+    for name, contestant in rivals.items():
         if turn < contestant.rounds:
             measured[kind, OURS].append((_ours(scene), scene))
             measured[kind, name].append((contestant.run(scene), scene))
 
 
-def _rivals(scene: Scene, pcl: PclRival | None) -> dict[str, Contestant]:
-    rivals = {}
+def _rivals(scene: Scene, pcl: PclRival | None, with_open3d: bool) -> dict[str, Contestant]:
+    rivals: dict[str, Contestant] = {}
     if pcl is not None:
         pcl.load(scene.points)
         for name, recipe in RECIPES.items():
             rivals[f"PCL, {name}"] = Contestant(_pcl(pcl, recipe), _SLOW_ROUNDS if recipe.leaf == 0.0 else 1_000)
+    if not with_open3d:
+        return rivals
     open3d = Open3dRival()
     open3d.load(scene.points, AREA, scene.table_from_camera)
     for name, recipe in RECIPES.items():
