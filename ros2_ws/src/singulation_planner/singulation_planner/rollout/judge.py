@@ -18,7 +18,8 @@ from singulation_planner.rollout.proposals import Proposals
 # direction [rad], friction, and of a block's density as a share of the mean.
 _SHIFT, _TURN, _FRICTION, _DENSITY = 0.05, 0.05, 0.1, 0.1
 _LEAST_FRICTION = 0.05
-_FRICTIONS = 0.9, 1.1  # of a second look at a push: a little less and a little more
+# A second look at a push: in steps half as long, with a little less and a little more friction.
+_SHORTER, _FRICTIONS = 0.5, (0.9, 1.1)
 _SAMPLED = 1 + len(_FRICTIONS)  # first of the sampled worlds; before it the one seen and those of the second look
 
 
@@ -106,7 +107,7 @@ class Judge:
             example = self.placer.push(target, scene.centroids[target], np.array((1.0, 0.0)))
             footprint = pusher_footprint(example, self.placer.geometry)
             seen = CompiledWorld(self.arrangement, footprint, self.physics, scene.scale)
-            again = [seen.rubbing(friction) for friction in _FRICTIONS]
+            again = [seen.finer(_SHORTER, friction) for friction in _FRICTIONS]
             sampled = [self._sampled(seen, k) for k in range(self.count if self.count > 1 else 0)]
             self._worlds[width] = [seen, *again, *sampled]
         return self._worlds[width]

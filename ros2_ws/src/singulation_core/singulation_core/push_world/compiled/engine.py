@@ -90,13 +90,13 @@ class CompiledWorld:
         measure_overlaps(made._shapes, made._state, made._origins)
         return made
 
-    def rubbing(self, share: float) -> "CompiledWorld":
-        """The same world with friction multiplied by ``share``.
+    def finer(self, steps: float, friction: float) -> "CompiledWorld":
+        """The same world with steps and friction multiplied by these.
 
         It shares its working memory with this world: never use both at the same time.
         """
-        made = copy.copy(self)
-        made._numbers = self._numbers._replace(friction=share * self._numbers.friction)
+        made, numbers = copy.copy(self), self._numbers
+        made._numbers = numbers._replace(step=steps * numbers.step, friction=friction * numbers.friction)
         return made
 
     def roll_out(self, starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, IntArray]:
