@@ -65,7 +65,7 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
         """Compile the library, listen to TF if needed, announce the results."""
         self._camera.prepare(self.settings.camera_pose_source)
         if must_compile():
-            self.get_logger().info("compiling, since nothing compiled is kept yet; this takes some 20 s, once")
+            self.get_logger().info("compiling, since nothing compiled is kept yet; this takes up to a minute, once")
         started = time.monotonic()
         warm_up()
         self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")

@@ -15,7 +15,7 @@ _PITCH = 0.001
 def warm_up() -> None:
     """Segments a small made-up cloud in every way there is, so that the first real one is as fast as the second.
 
-    With empty caches this compiles for some ten seconds; after that it takes a fraction of a second.
+    With empty caches this compiles for most of a minute; after that it takes about a second.
     """
     image = _every_kind_of_block()
     for cloud in (image, image.reshape(-1, 3)):
