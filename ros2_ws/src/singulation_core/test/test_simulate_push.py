@@ -196,3 +196,12 @@ def test_blocks_do_not_overlap_after_a_push(scene_of):
     scene = scene_of(7)
     for one in around(scene, 12):
         assert smallest_gap(simulate_push(scene, one, None, JAWS)) > -2e-4
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_tip_whose_centre_passes_beside_a_block_still_pushes_it(preset):
+    """Chipmunk does not see such a block ahead of a disc."""
+    square = 0.02 * np.array(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
+    passing = push((-0.05, 0.022), 0.0)
+    found = simulate_push(Arrangement([PlanarObject(0, square)]), passing, PushPhysics.named(preset), JAWS)
+    assert found.centroids[0, 0] > 0.005

@@ -21,8 +21,11 @@ def free_share(space: pymunk.Space, pusher: pymunk.Body, way: FloatArray) -> flo
 
 
 def _disc_share(space: pymunk.Space, centre: pymunk.Vec2d, radius: float, way: FloatArray) -> float:
-    hit = space.segment_query_first(centre, centre + (float(way[0]), float(way[1])), radius, BLOCKS_ONLY)
-    return 1.0 if hit is None else hit.alpha
+    # Not Chipmunk's query of the whole space: it looks only at blocks whose box the centre itself goes through.
+    end = centre + (float(way[0]), float(way[1]))
+    swept = pymunk.BB.newForCircle(centre, radius).merge(pymunk.BB.newForCircle(end, radius))
+    hits = (one.segment_query(centre, end, radius) for one in space.bb_query(swept, BLOCKS_ONLY))
+    return min((hit.alpha for hit in hits if hit is not None), default=1.0)
 
 
 def _in_the_way(space: pymunk.Space, shape: pymunk.Poly, way: FloatArray) -> list[FloatArray]:
