@@ -85,6 +85,6 @@ ROBUST: Sequence[Planner] = (
     _worked(160),
     _worked(64 + 16 * 16 + 17, worlds=16),
     _rollout(26.0, worlds=16),
-    *map(_at_a_distance, (FAST_BRUTE_FORCE, _rollout(10.0), _worked(160), _rollout(26.0, worlds=16))),
+    *map(_at_a_distance, (FAST_BRUTE_FORCE, _rollout(10.0), _worked(160))),
     _rollout(100.0, worlds=64),
 )

@@ -1,7 +1,7 @@
 """Options of reachability (paper, section III-A)."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from singulation_core import InvalidInputError, PusherGeometry
@@ -49,3 +49,8 @@ class Placement:
 def clearance_of(placement: Placement, geometry: PusherGeometry) -> float:
     """Gap between pusher and objects at the start [m]."""
     return geometry.tip_radius / 6.0 if placement.clearance is None else placement.clearance
+
+
+def with_room(placement: Placement, geometry: PusherGeometry, room: float) -> Placement:
+    """The placement with a clearance of at least ``room`` [m]."""
+    return placement if room <= clearance_of(placement, geometry) else replace(placement, clearance=room)

@@ -21,7 +21,7 @@ from singulation_core.polygon import FloatArray
 from singulation_core.push_world.physics import PushPhysics
 from singulation_planner.best_mode import Planned, best_of_modes
 from singulation_planner.candidates import Candidates
-from singulation_planner.placement import Placement, clearance_of
+from singulation_planner.placement import Placement, clearance_of, with_room
 from singulation_planner.placer import make_placer
 from singulation_planner.policies import find_policy
 from singulation_planner.policy import Policy, Task
@@ -84,14 +84,24 @@ def plan_push(
     settings = chosen.read_options(options)
     scene = Scene.of(arrangement, overlap_tolerance)
     _refuse_separated(arrangement, min_gap)
-    travel = _travel(push_distance, push_distance_factor * scene.scale, clearance_of(placement, pusher))
     walls = workspace_walls(workspace, scene)
 
-    def plan(with_mode: ContactMode, share: float = 1.0) -> Planned:
-        placer = make_placer(scene, with_mode, travel, pusher, placement, walls)
-        return _first_push(chosen, Task(scene, placer, seed, physics, share), settings)
+    def push_from(place: Placement) -> Push:
+        travel = _travel(push_distance, push_distance_factor * scene.scale, clearance_of(place, pusher))
 
-    return best_of_modes(plan, mode, scene, pusher, physics) if best_contact_mode else plan(mode).push
+        def plan(with_mode: ContactMode, share: float = 1.0) -> Planned:
+            placer = make_placer(scene, with_mode, travel, pusher, place, walls)
+            return _first_push(chosen, Task(scene, placer, seed, physics, share), settings)
+
+        return best_of_modes(plan, mode, scene, pusher, physics) if best_contact_mode else plan(mode).push
+
+    roomy = with_room(placement, pusher, getattr(settings, "start_room", 0.0) * scene.scale)
+    try:
+        return push_from(roomy)
+    except SingulationError as error:
+        if roomy is placement or error.code is not ResultCode.NO_PUSH:
+            raise
+    return push_from(placement)
 
 
 def _refuse_separated(arrangement: Arrangement, min_gap: float | None) -> None:

@@ -85,7 +85,8 @@ def policy(options: type[Any]) -> Callable[[Rank], Rank]:
 
     Args:
         options: frozen dataclass; a field is a ``Literal`` of choices, a bool, a positive int or a positive float (or
-            one >= 0, if its metadata say ``{"low": 0.0}``).
+            one >= 0, if its metadata say ``{"low": 0.0}``). A property ``start_room`` [mean bounding radii] asks for
+            starts with that gap to all objects, where there are any.
     """
 
     def register(rank: Rank) -> Rank:

@@ -4,6 +4,7 @@ import itertools
 import math
 from collections import Counter
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from singulation_core import (
     ContactMode,
     InvalidInputError,
+    PusherGeometry,
     ResultCode,
     SingulationError,
     singulation_distance,
@@ -20,8 +22,10 @@ from singulation_core import (
 from singulation_core.push_world import PushPhysics, simulate_push
 from singulation_core.push_world.compiled import DIVERGED, CompiledWorld
 from singulation_planner import plan_push
+from singulation_planner.placement import Placement
 from singulation_planner.placer import NOT_SIMULATED
 from singulation_planner.rollout.judge import Judge
+from singulation_planner.rollout.options import Options
 from singulation_planner.testing import clutter, squares
 
 OBJECTIVES = ("singulation_distance", "clearance")
@@ -90,6 +94,31 @@ def test_more_work_in_sampled_worlds_never_expects_less():
     scene = clutter(5, 11)
     gains = [plan(scene, worlds=4, rollouts=limit).expected_gain for limit in (6, 80, 110, 140, 260)]
     assert all(later >= earlier - 1e-9 for earlier, later in itertools.pairwise(gains))
+
+
+def gap_at_start(push, scene):
+    tip = PusherGeometry().tip_radius
+    outlines = (item.outline.astype(np.float32) for item in scene.objects)
+    x, y = (float(value) for value in push.start)
+    return min(-cv2.pointPolygonTest(outline, (x, y), True) for outline in outlines) - tip
+
+
+def test_in_sampled_worlds_starts_leave_room_for_what_is_not_known():
+    scenes = [clutter(6, seed) for seed in range(5)]
+    room = [0.05 * np.mean([item.bounding_radius for item in scene.objects]) for scene in scenes]
+    near = Placement(clearance=2e-4)
+    alone = [gap_at_start(plan(scene, rollouts=30, placement=near), scene) for scene in scenes]
+    sampled = [gap_at_start(plan(scene, rollouts=60, placement=near, worlds=2), scene) for scene in scenes]
+    assert all(gap >= least - 1e-6 for gap, least in zip(sampled, room, strict=True))
+    assert any(gap < least - 1e-6 for gap, least in zip(alone, room, strict=True))
+
+
+def test_where_there_is_no_such_room_narrower_starts_are_taken(monkeypatch):
+    scene, half = clutter(5, 7), 0.4
+    table = [(-half, -half), (half, -half), (half, half), (-half, half)]
+    monkeypatch.setattr(Options, "start_room", 1000.0)
+    push = plan(scene, worlds=2, rollouts=40, workspace=table)
+    assert gap_at_start(push, scene) > 0.0
 
 
 def test_looking_ahead_takes_a_push_that_leads_further():

@@ -12,11 +12,12 @@ from singulation_core.push_world.compiled import CompiledWorld
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.placer import NOT_SIMULATED, Placer
 from singulation_planner.rollout.objective import Objective
+from singulation_planner.rollout.options import SHIFT
 from singulation_planner.rollout.proposals import Proposals
 
-# What perception and the paper's section V-A leave open: standard deviations of position [mean bounding radii],
-# direction [rad], friction, and of a block's density as a share of the mean.
-_SHIFT, _TURN, _FRICTION, _DENSITY = 0.05, 0.05, 0.1, 0.1
+# What perception and the paper's section V-A leave open, beside the position: standard deviations of direction [rad],
+# friction, and of a block's density as a share of the mean.
+_TURN, _FRICTION, _DENSITY = 0.05, 0.1, 0.1
 _LEAST_FRICTION = 0.05
 # A second look at a push: in steps half as long, with a little less and a little more friction.
 _SHORTER, _FRICTIONS = 0.5, (0.9, 1.1)
@@ -117,5 +118,5 @@ class Judge:
         random = np.random.default_rng((self.seed, number))
         friction = max(_LEAST_FRICTION, self.physics.friction + _FRICTION * random.standard_normal())
         physics = replace(self.physics, friction=friction, density_spread=_DENSITY, seed=int(random.integers(2**31)))
-        shifts = _SHIFT * scene.scale * random.standard_normal((len(scene), 2))
+        shifts = SHIFT * scene.scale * random.standard_normal((len(scene), 2))
         return seen.varied(shifts, _TURN * random.standard_normal(len(scene)), physics)

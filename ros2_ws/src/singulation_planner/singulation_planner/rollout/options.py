@@ -6,6 +6,7 @@ from typing import Literal
 from singulation_core import InvalidInputError
 
 WIDTH = 0.4  # default of ``clearance_width`` in mean bounding radii
+SHIFT = 0.05  # standard deviation of a block's position in sampled worlds [mean bounding radii]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +22,7 @@ class Options:
             same push on every machine.
         clearance_width: gap that is wide enough [m]; 0: 0.4 mean bounding radii.
         worlds: in how many sampled worlds (poses, friction, density) the best pushes are judged; 1: in the one seen.
+            With more of them starts also keep the blocks' uncertainty free around the jaws, where there is room.
         look_ahead: how many pushes ahead the best ones are judged by what can be reached; 1: greedy.
     """
 
@@ -40,3 +42,8 @@ class Options:
             raise InvalidInputError(
                 f"rollout_push: worlds {self.worlds} with look_ahead {self.look_ahead}, need 1 for one of them"
             )
+
+    @property
+    def start_room(self) -> float:
+        """Gap to all blocks that starts should have [mean bounding radii]: jaws cannot come down on a block."""
+        return SHIFT if self.worlds > 1 else 0.0
