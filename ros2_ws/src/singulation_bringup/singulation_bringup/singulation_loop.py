@@ -174,7 +174,7 @@ class SingulationLoop:
             self._unit = float(seen.bounding_radii.mean())
         tracked = self._tracker.update(seen, expected)
         self._seen, self._tracked = seen, tracked
-        lost = self._progress.lost - set(tracked.divided) | set(tracked.lost)
+        lost = self._progress.lost - set(tracked.given_up) | set(tracked.lost)
         self._progress.lost = lost - set(tracked.lasting_ids.values())
         self._progress.distances.append(singulation_distance(seen, self._unit))
         # Two blocks that are seen as one touch.

@@ -20,11 +20,13 @@ class TrackingParameters:
         reach: farthest that a block moves between two looks [m]; a push is a few block sizes long.
         area_change: largest ratio of areas minus one; perception measures areas within a few per cent.
         shape_weight: metres of distance that a doubled area counts as.
+        whole_again: as ``area_change``, for a block that was seen in two pieces once and is whole before and after.
     """
 
     reach: float = 0.15
     area_change: float = 0.5
     shape_weight: float = 0.2
+    whole_again: float = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +39,7 @@ class Tracked:
         lost: lasting ids of blocks that are known and not seen now.
         covered: of them, those that should lie where another block is seen: the two may be seen as one.
         found: lasting ids that are new.
-        divided: lasting ids that are given up, because what they named is now seen as several blocks.
+        given_up: lasting ids of what is now seen as several blocks, or was a piece of a block that is whole again.
     """
 
     arrangement: Arrangement
@@ -45,7 +47,7 @@ class Tracked:
     lost: tuple[int, ...]
     covered: tuple[int, ...]
     found: tuple[int, ...]
-    divided: tuple[int, ...]
+    given_up: tuple[int, ...]
 
 
 class Tracker:
@@ -55,6 +57,7 @@ class Tracker:
         self._parameters = parameters or TrackingParameters()
         self._known: dict[int, PlanarObject] = {}
         self._next_id = 0
+        self._areas_before: dict[int, dict[int, float]] = {}  # of what was found a look ago: who had which area then
 
     def update(self, seen: Arrangement, expected: Arrangement | None = None) -> Tracked:
         """Match a look to what is known, by pose and shape (least total cost, one to one).
@@ -74,9 +77,11 @@ class Tracker:
         objects = [renamed(item, lasting[item.id]) for item in seen.objects]
         found = [item for item in objects if item.id not in self._known]
         lost = {identity: item for identity, item in self._known.items() if identity not in lasting.values()}
-        divided = [identity for identity, item in lost.items() if _is_divided(item, found, self._parameters)]
-        for identity in divided:
+        given_up = [identity for identity, item in lost.items() if _is_divided(item, found, self._parameters)]
+        given_up += [identity for identity, item in lost.items() if self._was_a_piece(item, objects)]
+        for identity in given_up:
             del self._known[identity], lost[identity]
+        self._areas_before = {item.id: {one: known.area for one, known in self._known.items()} for item in found}
         # A block that is hidden for one look keeps its place, so that it is recognised when it is seen again.
         self._known |= {item.id: item for item in objects}
         covered = [identity for identity, item in lost.items() if _is_covered(item, objects)]
@@ -86,7 +91,18 @@ class Tracker:
             tuple(lost),
             tuple(covered),
             tuple(item.id for item in found),
-            tuple(divided),
+            tuple(given_up),
+        )
+
+    def _was_a_piece(self, item: PlanarObject, objects: Sequence[PlanarObject]) -> bool:
+        """Whether what was found a look ago lies where a block is that was whole before, and is now again."""
+        areas, limit = self._areas_before.get(item.id, {}), self._parameters.whole_again
+        return any(
+            _ratio(one.area, areas[one.id]) - 1.0 <= limit
+            and _ratio(one.area, self._known[one.id].area + item.area) - 1.0 <= limit
+            and contains(one.outline, item.centroid)[0]
+            for one in objects
+            if one.id in areas
         )
 
     def _new_id(self) -> int:
@@ -98,7 +114,11 @@ def _is_divided(item: PlanarObject, found: Sequence[PlanarObject], limits: Track
     """Whether several new blocks lie where one was, and are about as large together."""
     parts = [one for one in found if contains(item.outline, one.centroid)[0]]
     whole = sum(one.area for one in parts)
-    return len(parts) > 1 and max(item.area / whole, whole / item.area) - 1.0 <= limits.area_change
+    return len(parts) > 1 and _ratio(item.area, whole) - 1.0 <= limits.area_change
+
+
+def _ratio(area: float, other: float) -> float:
+    return max(area / other, other / area)
 
 
 def _is_covered(item: PlanarObject, objects: Sequence[PlanarObject]) -> bool:
@@ -120,7 +140,7 @@ def _match(known: list[PlanarObject], seen: list[PlanarObject], limits: Tracking
 
 
 def _cost(old: PlanarObject, new: PlanarObject, limits: TrackingParameters) -> float:
-    ratio = max(old.area / new.area, new.area / old.area)
+    ratio = _ratio(old.area, new.area)
     distance = _length(old.centroid - new.centroid)
     if not (distance <= limits.reach and ratio - 1.0 <= limits.area_change):
         return _FORBIDDEN

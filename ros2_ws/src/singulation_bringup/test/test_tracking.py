@@ -62,9 +62,47 @@ def test_blocks_first_seen_as_one_are_no_lost_block():
     tracker = Tracker()
     first = tracker.update(Arrangement([PlanarObject(0, pair)]))
     second = tracker.update(Arrangement([PlanarObject(4, SQUARE), PlanarObject(5, SQUARE + (0.041, 0.0))]))
-    assert second.divided == (first.lasting_ids[0],)
+    assert second.given_up == (first.lasting_ids[0],)
     assert second.lost == ()
     assert len(second.found) == 2
+
+
+WHOLE = np.array(((0.0, 0.0), (0.05, 0.0), (0.05, 0.03), (0.0, 0.03)))
+PIECES = (WHOLE - (0.01, 0.0)).clip(0.0, None), WHOLE.clip(None, (0.01, 1.0))
+
+
+def outlined(identity, outline):
+    return PlanarObject(identity, outline)
+
+
+def test_a_piece_that_was_seen_once_is_no_lost_block_when_its_block_is_whole_again():
+    large, small = PIECES
+    whole = Arrangement([outlined(0, WHOLE)])
+    tracker = Tracker()
+    first = tracker.update(whole)
+    cut = tracker.update(Arrangement([outlined(0, large + (0.01, 0.0)), outlined(1, small)]))
+    again = tracker.update(whole)
+    assert cut.lasting_ids[0] == again.lasting_ids[0] == first.lasting_ids[0]
+    assert again.given_up == (cut.lasting_ids[1],)
+    assert again.lost == again.covered == ()
+    assert tracker.update(whole).lost == ()
+
+
+def test_a_block_seen_twice_beside_another_is_lost_when_the_two_are_seen_as_one():
+    large, small = PIECES
+    apart = Arrangement([outlined(0, large + (0.01, 0.0)), outlined(1, small)])
+    tracker = Tracker()
+    tracker.update(Arrangement([outlined(0, WHOLE)]))
+    tracker.update(apart)
+    second = tracker.update(apart)
+    assert tracker.update(Arrangement([outlined(0, WHOLE)])).covered == (second.lasting_ids[1],)
+
+
+def test_a_block_that_was_there_from_the_start_is_lost_when_it_is_seen_as_a_part_of_another():
+    large, small = PIECES
+    tracker = Tracker()
+    first = tracker.update(Arrangement([outlined(0, large + (0.01, 0.0)), outlined(1, small)]))
+    assert tracker.update(Arrangement([outlined(0, WHOLE)])).covered == (first.lasting_ids[1],)
 
 
 def test_a_block_under_another_outline_is_covered():
