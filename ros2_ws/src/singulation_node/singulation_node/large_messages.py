@@ -30,7 +30,7 @@ def prepare_for_large_messages() -> bool:
     Returns:
         Whether large messages will arrive reliably; if not, the reason has been printed.
     """
-    _keep_memory()
+    keep_memory()
     chosen = os.environ.get(PROFILE_VARIABLE)
     if chosen and chosen != str(PROFILE):
         return True
@@ -90,7 +90,7 @@ def remove_abandoned_segments() -> int:
     return removed
 
 
-def _keep_memory() -> None:
+def keep_memory() -> None:
     """Large blocks come from a heap that never shrinks: fresh pages for each would cost more than the copying."""
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is None:  # not glibc
