@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -108,3 +109,20 @@ def test_an_unknown_benchmark_names_the_known_ones():
     result = subprocess.run([SCRIPTS / "bench", "nothing"], capture_output=True, text=True, timeout=120, check=False)
     assert result.returncode == 1
     assert "perception" in result.stderr
+
+
+def test_a_program_that_is_neither_installed_nor_a_package_is_named():
+    result = subprocess.run([SCRIPTS / "run", "nothing"], capture_output=True, text=True, timeout=120, check=False)
+    assert result.returncode == 1
+    assert "no program nothing" in result.stderr
+    assert "scripts/run PACKAGE EXECUTABLE" in result.stderr
+
+
+@pytest.mark.parametrize("script", ["run", "test"])
+def test_help_is_given_where_nothing_is_set_up(script, tmp_path):
+    """A copy without environment: whatever it would set up stays missing."""
+    shutil.copytree(SCRIPTS, tmp_path / "scripts")
+    found = bash(f"'{tmp_path}/scripts/{script}' --help")
+    assert (found.returncode, found.stderr) == (0, "")
+    assert f"scripts/{script} " in found.stdout
+    assert [one.name for one in tmp_path.iterdir()] == ["scripts"]

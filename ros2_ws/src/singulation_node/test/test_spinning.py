@@ -49,13 +49,14 @@ def require_service(node):
 
 def test_entities_that_come_and_go_do_not_end_it(node, spin):
     node.create_service(Trigger, "spun/ask", answer)
-    spin()
+    _, failures = spin()
     for _ in range(60):
         subscription = node.create_subscription(Empty, "nothing", lambda _: None, 1)
         publisher = node.create_publisher(Empty, "nothing", 1)
         node.destroy_subscription(subscription)
         node.destroy_publisher(publisher)
     require_service(node)
+    assert not failures
 
 
 @pytest.mark.parametrize("error", [rclpy_implementation.InvalidHandle, rclpy_implementation.RCLError])

@@ -11,8 +11,6 @@ from singulation_perception.seams import candidates, edges_between
 from singulation_perception.simplified import simplified
 from singulation_perception.traces import trace_strength
 
-TOTAL, COST, FIRST, LAST, LINE = 0, 1, 2, 3, 4  # columns of a table of cuts
-
 _CORNER_TOLERANCE = 0.72  # of the roughness, for Douglas-Peucker when corners are sought
 _SEEN = 0.8  # share of a cut's cost that a trace beyond doubt saves
 

@@ -51,6 +51,19 @@ def test_invalid_points_do_not_matter(invalid):
     expect_blocks(segment(points, PARAMETERS), BLOCKS)
 
 
+@pytest.mark.parametrize("room", [8, 3000], ids=["no room for runs", "no room for points"])
+def test_more_points_than_usual_change_nothing(monkeypatch, room):
+    """What is set aside for points and runs at first is too small; all of it is collected again with room for all."""
+    points = cloud(*BLOCKS)
+    usual = segment(points, PARAMETERS)
+    monkeypatch.setattr("singulation_perception.object_points._ROOM", room)
+    crowded = segment(points, PARAMETERS)
+    assert [one.point_count for one in crowded.objects] == [one.point_count for one in usual.objects]
+    for one, other in zip(crowded.objects, usual.objects, strict=True):
+        np.testing.assert_array_equal(one.outline, other.outline)
+    expect_blocks(crowded, BLOCKS)
+
+
 def test_a_bare_table_is_no_objects_and_no_error():
     assert len(segment(cloud(), PARAMETERS)) == 0
 

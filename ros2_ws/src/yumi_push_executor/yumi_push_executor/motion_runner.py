@@ -1,6 +1,7 @@
 """The loop that runs one supervised motion: waits for states, steps the supervisor, sends its orders."""
 
 from collections.abc import Callable
+from contextlib import ExitStack
 
 from singulation_core import ResultCode, SingulationError
 from yumi_push_executor.kinematics.model import ARMS
@@ -70,11 +71,11 @@ class MotionRunner:
             step = supervisor.start(self._view.driver, self._clock())
             self.moved = True
             self._send_all(step)
-        try:
-            return self._follow(supervisor, on_step)
-        except Exception:
-            self._hold_both()
-            raise
+        with ExitStack() as left_by_a_defect:
+            left_by_a_defect.callback(self._hold_both)
+            outcome = self._follow(supervisor, on_step)
+            left_by_a_defect.pop_all()
+        return outcome
 
     def _follow(self, supervisor: Supervisor, on_step: Callable[[Step], None]) -> Outcome:
         while True:
