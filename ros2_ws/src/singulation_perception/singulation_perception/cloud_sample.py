@@ -28,11 +28,13 @@ class CloudSample:
         located: (m, 3) in the given frame [m].
         columns: (H, 2) first column and column after the last that may hold the workspace, in each row of the cloud.
         distance: mean distance of the points to the camera [m].
+        pitch: distance of neighbouring points of the cloud on the table, rather too large than too small [m].
     """
 
     located: FloatArray
     columns: IntArray
     distance: float
+    pitch: float
 
 
 def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> CloudSample:
@@ -64,7 +66,16 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
             ResultCode.NOT_METRES,
             f"mean distance {distance:.0f}: the cloud looks like millimetres; clouds are in metres, divide by 1000",
         )
-    return CloudSample(located, _columns(spans, row_step, 3 * column_step, height, width), distance)
+    columns = _columns(spans, row_step, 3 * column_step, height, width)
+    return CloudSample(located, columns, distance, _pitch(located, row_step * column_step))
+
+
+def _pitch(located: FloatArray, every: int) -> float:
+    """Of points ``every``-th of which are given: the room they take is more than what they cover."""
+    if not len(located):
+        return 0.0
+    (x_min, y_min), (x_max, y_max) = located[:, :2].min(axis=0), located[:, :2].max(axis=0)
+    return math.sqrt((x_max - x_min) * (y_max - y_min) / (len(located) * every))
 
 
 def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: int) -> IntArray:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled
 from singulation_perception.object_points import IntArray
 
 
@@ -43,13 +44,32 @@ def face_image(
         ring: (m, 2) rim [m].
         pixels: (m, 2) rows and columns of the rim in the cloud.
     """
-    middle = ring.mean(axis=0)
-    places, seen = ring - middle, (pixels - corner).astype(np.float64)
-    (xx, xy), (_, yy) = (places.T @ places).tolist()
-    determinant = xx * yy - xy * xy  # least squares by hand: LAPACK's set-up takes longer than all the rest
-    turn = (places.T @ seen).T @ np.array(((yy, -xy), (-xy, xx))) / max(determinant, 1e-30)
-    to_pixel = np.column_stack((turn, seen.mean(axis=0) - turn @ middle))
-    return FaceImage(corner, point, xyz, to_pixel)
+    return FaceImage(corner, point, xyz, _fitted_map(ring, pixels, corner))
+
+
+@compiled
+def _fitted_map(ring: FloatArray, pixels: IntArray, corner: IntArray) -> FloatArray:
+    """Least squares (2, 3): from places to rows and columns of the image."""
+    count = max(len(ring), 1)
+    x, y, row, column = 0.0, 0.0, 0.0, 0.0
+    for i in range(len(ring)):
+        x, y = x + ring[i, 0], y + ring[i, 1]
+        row, column = row + pixels[i, 0] - corner[0], column + pixels[i, 1] - corner[1]
+    x, y, row, column = x / count, y / count, row / count, column / count
+    xx, xy, yy = 0.0, 0.0, 0.0
+    xr, yr, xc, yc = 0.0, 0.0, 0.0, 0.0
+    for i in range(len(ring)):
+        dx, dy = ring[i, 0] - x, ring[i, 1] - y
+        down, right = pixels[i, 0] - corner[0] - row, pixels[i, 1] - corner[1] - column
+        xx, xy, yy = xx + dx * dx, xy + dx * dy, yy + dy * dy
+        xr, yr, xc, yc = xr + dx * down, yr + dy * down, xc + dx * right, yc + dy * right
+    determinant = max(xx * yy - xy * xy, 1e-30)
+    to_pixel = np.empty((2, 3))
+    to_pixel[0, 0], to_pixel[0, 1] = (xr * yy - yr * xy) / determinant, (yr * xx - xr * xy) / determinant
+    to_pixel[1, 0], to_pixel[1, 1] = (xc * yy - yc * xy) / determinant, (yc * xx - xc * xy) / determinant
+    to_pixel[0, 2] = row - to_pixel[0, 0] * x - to_pixel[0, 1] * y
+    to_pixel[1, 2] = column - to_pixel[1, 0] * x - to_pixel[1, 1] * y
+    return to_pixel
 
 
 def to_table(image: FaceImage) -> FloatArray:

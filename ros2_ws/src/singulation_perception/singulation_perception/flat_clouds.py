@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from singulation_core.polygon import FloatArray
 from singulation_perception.clustering import euclidean_clusters
 from singulation_perception.jit import compiled
-from singulation_perception.object_points import FIRST, START, STOP, IntArray, ObjectPoints
+from singulation_perception.object_points import FIRST, HIGH, LOW, START, STOP, IntArray, ObjectPoints, widen
 from singulation_perception.parameters import SegmentationParameters
 
 Points = NDArray[np.float32]
@@ -97,7 +98,7 @@ def _cells(xyz: Points, kept: NDArray[np.bool_], size: float) -> tuple[NDArray[n
 @compiled
 def _drawn(
     xyz: Points, clusters: IntArray, cell: NDArray[np.int64], rows: int, columns: int, step: np.float32
-) -> tuple[Points, IntArray, Points, IntArray]:
+) -> tuple[Points, IntArray, FloatArray, IntArray]:
     """Highest point of each cell, the runs of them, their heights, and the cluster of each run."""
     best = np.full(rows * columns, -1, dtype=np.int32)
     for i in range(len(xyz)):
@@ -105,7 +106,7 @@ def _drawn(
             best[cell[i]] = i
     points = np.empty((len(xyz), 3), dtype=np.float32)
     runs = np.empty((len(xyz), 4), dtype=np.int32)
-    spans = np.empty((len(xyz), 2), dtype=np.float32)
+    spans = np.zeros((len(xyz), 4))
     cluster = np.empty(len(xyz), dtype=np.int32)
     count, run, before = 0, -1, -1
     for at in range(rows * columns):
@@ -115,10 +116,10 @@ def _drawn(
             if new or abs(xyz[before, 2] - xyz[i, 2]) > step:
                 run += 1
                 runs[run, 0], runs[run, 1], runs[run, 3] = at // columns, at % columns, count
-                spans[run, 0], spans[run, 1] = xyz[i, 2], xyz[i, 2]
+                spans[run, LOW], spans[run, HIGH] = xyz[i, 2], xyz[i, 2]
                 cluster[run] = clusters[i]
             runs[run, 2] = at % columns + 1
-            spans[run, 0], spans[run, 1] = min(spans[run, 0], xyz[i, 2]), max(spans[run, 1], xyz[i, 2])
+            widen(spans, np.int64(run), np.float64(xyz[i, 2]))
             points[count, 0], points[count, 1], points[count, 2] = xyz[i, 0], xyz[i, 1], xyz[i, 2]
             count += 1
         before = i

@@ -7,16 +7,18 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.cloud_sample import Workspace
-from singulation_perception.jit import compiled_sums
+from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, X, Y, coordinates, marked_blocks
+from singulation_perception.jit import compiled_plain, compiled_sums
 from singulation_perception.raster import Raster
 
 IntArray = NDArray[np.int32]
-Heights = NDArray[np.float32]
+Points = NDArray[np.float32]
 
 ROW, START, STOP, FIRST = 0, 1, 2, 3  # columns of a table of runs
+LOW, HIGH, SUM, SQUARES = 0, 1, 2, 3  # columns of the spans of runs
 
-_BLOCK = 32  # points of a row that are passed over together if none of them is high enough
 _ROOM = 800_000  # points at first: usual scenes need less, and fresh memory costs more than looking at the points
+_LOW, _OUTSIDE, _BEGINS, _GOES_ON = 0, 1, 2, 3  # kinds of points; an object's begin a run or go on with one
 _TOO_FAR = 100.0  # [m] above the table: an infinite or absurd point
 
 
@@ -28,13 +30,13 @@ class ObjectPoints:
         xyz: (n, 3) float32 in ``table`` [m].
         runs: (m, 4) int32: row, first column, column after the last, number of the first point. Neighbours inside a
             run differ by at most the height step.
-        spans: (m, 2) least and greatest height in each run [m].
+        spans: (m, 4) least and greatest height in each run [m], sum of the heights [m] and of their squares [m^2].
         outside: object points left out because they lie outside the workspace.
     """
 
     xyz: NDArray[np.float32]
     runs: IntArray
-    spans: NDArray[np.float32]
+    spans: FloatArray
     outside: int
 
 
@@ -45,6 +47,7 @@ def object_points(
     columns: IntArray,
     lowest: float,
     step: float,
+    stride: int = 1,
 ) -> ObjectPoints:
     """Collects what is higher than ``lowest`` and inside the workspace.
 
@@ -55,102 +58,137 @@ def object_points(
         columns: (H, 2) first column and column after the last to look at, in each row.
         lowest: height from which a point belongs to an object [m].
         step: height difference at which a run ends [m].
+        stride: rows between two that are looked at to find out where the others are, see ``coarse_look``.
     """
     limits = np.array(workspace or (-np.inf, np.inf, -np.inf, np.inf), dtype=np.float32)
     pose = table_from_camera[:3].astype(np.float32)
     most = int((columns[:, 1] - columns[:, 0]).sum())
-    sizes = min(most, _ROOM), min(most // 2 + len(columns), _ROOM // 8)
+    sizes = min(most, _ROOM), min(most, _ROOM // 8)
+    marks = marked_blocks(cloud, columns, pose, lowest, stride)
     while True:
         xyz = np.empty((sizes[0], 3), dtype=np.float32)
         runs = np.empty((sizes[1], 4), dtype=np.int32)
-        spans = np.empty((sizes[1], 2), dtype=np.float32)
+        spans = np.empty((sizes[1], 4))
         count, run_count, outside = _collect(
-            cloud, columns, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
+            cloud, columns, marks, stride, pose, limits, np.float32(lowest), np.float32(step), xyz, runs, spans
         )
         if count >= 0:
             return ObjectPoints(xyz[:count], runs[:run_count], spans[:run_count], outside)
-        sizes = most, most // 2 + len(columns)
+        sizes = most, most
 
 
 @compiled_sums
 def _collect(
     cloud: Raster,
     columns: IntArray,
+    marks: Marks,
+    stride: int,
     pose: NDArray[np.float32],
     limits: NDArray[np.float32],
     lowest: np.float32,
     step: np.float32,
     xyz: NDArray[np.float32],
     runs: IntArray,
-    spans: NDArray[np.float32],
+    spans: FloatArray,
 ) -> tuple[int, int, int]:
     """Numbers of points and runs written, and of points outside; -1 points if there is no room for all."""
-    numbers, point_step = cloud.numbers, np.uintp(cloud.point_step)
-    # Numbers of their own: array elements would be read again after every point that is written.
-    ax, bx, cx, dx = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
-    ay, by, cy, dy = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
-    x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
-    levels = np.empty(cloud.width, dtype=np.float32)
-    count, run, outside = 0, -1, 0
-    before, stop, low, high = lowest, 0, lowest, lowest
+    x, y = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.float32)
+    height, kind = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.uint8)
+    count, run, outside = 0, 0, 0
     for row in range(cloud.height):
-        left, width = int(columns[row, 0]), int(columns[row, 1] - columns[row, 0])
-        start = np.uintp(row * cloud.row_step + left * cloud.point_step)
-        if count + width > len(xyz) or run + width // 2 + 2 > len(runs):
+        stop, right = np.int64(columns[row, 0]), np.int64(columns[row, 1])
+        if count + right - stop > len(xyz) or run + right - stop > len(runs):
             return -1, 0, 0
-        _heights(numbers, start, point_step, pose, levels, width)
-        last = -2
-        for begin in range(0, width, _BLOCK):
-            end = min(begin + _BLOCK, width)
-            some = 0
-            for column in range(begin, end):
-                some += levels[column] > lowest
-            if some == 0:
-                continue
-            for column in range(begin, end):
-                level = levels[column]
-                if not (level > lowest):
+        while stop < right:
+            begin, stop = _marked(marks[row // stride], stop, right)
+            coordinates(cloud, row, begin, pose, HEIGHT, height, stop - begin)
+            coordinates(cloud, row, begin, pose, X, x, stop - begin)
+            coordinates(cloud, row, begin, pose, Y, y, stop - begin)
+            _classify(x, y, height, kind, stop - begin, limits, lowest, pose[2, 3], step)
+            i = 0
+            while i < stop - begin:
+                if kind[i] == _LOW or kind[i] == _OUTSIDE:
+                    outside += kind[i] == _OUTSIDE
+                    i += 1
                     continue
-                at = start + np.uintp(column) * point_step
-                a, b, c = numbers[at], numbers[at + np.uintp(1)], numbers[at + np.uintp(2)]
-                x, y = a * ax + b * bx + c * cx + dx, a * ay + b * by + c * cy + dy
-                if not (x_min <= x <= x_max and y_min <= y <= y_max):
-                    outside += 1
-                    continue
-                if not (level < _TOO_FAR) or (a == 0.0 and b == 0.0 and c == 0.0):
-                    continue
-                if last != column - 1 or not (abs(level - before) <= step):
-                    if run >= 0:
-                        runs[run, 2], spans[run, 0], spans[run, 1] = stop, low, high
-                    run += 1
-                    runs[run, 0], runs[run, 1], runs[run, 3] = row, left + column, count
-                    low, high = level, level
-                last, before, stop = column, level, left + column + 1
-                low, high = min(low, level), max(high, level)
-                xyz[count, 0], xyz[count, 1], xyz[count, 2] = x, y, level
-                count += 1
-    if run >= 0:
-        runs[run, 2], spans[run, 0], spans[run, 1] = stop, low, high
-    return count, run + 1, outside
+                end = _end_of_run(kind, i, stop - begin)
+                runs[run, ROW], runs[run, FIRST] = row, count
+                runs[run, START], runs[run, STOP] = begin + i, begin + end
+                _take(x, y, height, i, end, xyz, count, spans, run)
+                run, count, i = run + 1, count + end - i, end
+    return count, run, outside
+
+
+@compiled_plain
+def _marked(marks: Marks, begin: int, right: int) -> tuple[int, int]:
+    """The next columns to look at from ``begin`` on, as far as they hang together; none: ``right`` twice."""
+    while begin < right and marks[begin // BLOCK] == 0:
+        begin = (begin // BLOCK + 1) * BLOCK
+    begin = min(begin, right)
+    stop = begin
+    while stop < right and marks[stop // BLOCK] != 0:
+        stop = (stop // BLOCK + 1) * BLOCK
+    return begin, min(stop, right)
+
+
+@compiled_plain
+def _end_of_run(kind: NDArray[np.uint8], first: int, size: int) -> int:
+    end = first + 1
+    while end < size and kind[end] == _GOES_ON:
+        end += 1
+    return end
+
+
+@compiled_plain
+def _classify(
+    x: Values,
+    y: Values,
+    height: Values,
+    kind: NDArray[np.uint8],
+    size: int,
+    limits: NDArray[np.float32],
+    lowest: np.float32,
+    nowhere: np.float32,
+    step: np.float32,
+) -> None:
+    """Says of each point whether it belongs to an object, and whether to the run of the one before.
+
+    Only ``nowhere``, the height of (0, 0, 0), is that high: what is not a point counts as low.
+    """
+    x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
+    for k in range(size):
+        i = np.uintp(k)
+        high = (height[i] > lowest) & (height[i] < _TOO_FAR) & (height[i] != nowhere)
+        inside = (x[i] >= x_min) & (x[i] <= x_max) & (y[i] >= y_min) & (y[i] <= y_max)
+        kind[i] = np.uint8(high) * (np.uint8(1) + np.uint8(inside))
+    for k in range(size - 1):
+        one, two = np.uintp(size - 2 - k), np.uintp(size - 1 - k)
+        near = (kind[one] == _BEGINS) & (kind[two] == _BEGINS) & (abs(height[two] - height[one]) <= step)
+        kind[two] += np.uint8(near)
 
 
 @compiled_sums
-def _heights(
-    numbers: NDArray[np.float32],
-    start: int,
-    point_step: int,
-    pose: NDArray[np.float32],
-    levels: NDArray[np.float32],
-    width: int,
+def _take(
+    x: Values, y: Values, height: Values, first: int, end: int, xyz: Points, count: int, spans: FloatArray, run: int
 ) -> None:
-    """Heights of the points of one row; unsigned indices and a known step, because that makes vector instructions."""
-    a, b, c, d = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
-    one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
-    if point_step == three:
-        for column in range(width):
-            at = start + three * np.uintp(column)
-            levels[column] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d
-    else:
-        for column in range(width):
-            at = start + point_step * np.uintp(column)
-            levels[column] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d
+    """Writes the points of a run and its span."""
+    low, high, base, at = height[first], height[first], np.uintp(first), np.uintp(count)
+    total, squares = 0.0, 0.0
+    for k in range(end - first):
+        i = np.uintp(k)
+        level = height[base + i]
+        xyz[at + i, 0], xyz[at + i, 1], xyz[at + i, 2] = x[base + i], y[base + i], level
+        total += np.float64(level)
+        squares += np.float64(level) * np.float64(level)
+    for k in range(end - first):
+        level = height[base + np.uintp(k)]
+        low, high = min(low, level), max(high, level)
+    spans[run, LOW], spans[run, HIGH], spans[run, SUM], spans[run, SQUARES] = low, high, total, squares
+
+
+@compiled_plain
+def widen(spans: FloatArray, run: int, height: float) -> None:
+    """Takes one more point into the span of a run."""
+    spans[run, LOW], spans[run, HIGH] = min(spans[run, LOW], height), max(spans[run, HIGH], height)
+    spans[run, SUM] += height
+    spans[run, SQUARES] += height * height

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from singulation_core import Arrangement, InvalidInputError, ResultCode, SingulationError
 from singulation_perception.block_search import Blocks, blocks_of
+from singulation_perception.coarse_look import rows_between
 from singulation_perception.flat_clouds import FlatCloud, flat_cloud
 from singulation_perception.hidden import View
 from singulation_perception.object_points import ObjectPoints, object_points
@@ -101,7 +102,8 @@ def segment_cloud(
     clock.lap("table")
     step = parameters.height_step or max(_STEP_IN_NOISE * table.noise, _LEAST_STEP)
     lowest = max(parameters.min_height, _LOWEST_IN_NOISE * table.noise)
-    seen = object_points(cloud, table.table_from_camera, parameters.workspace, table.columns, lowest, step)
+    stride = rows_between(cloud, table.pitch, parameters.min_width)
+    seen = object_points(cloud, table.table_from_camera, parameters.workspace, table.columns, lowest, step, stride)
     clock.lap("points")
     flat = None
     if image.shape[0] == 1:

@@ -6,9 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_plain, compiled_sums
+from singulation_core.polygon import FloatArray
+from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.levels import level_at, levels_of
-from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
+from singulation_perception.object_points import (
+    FIRST,
+    HIGH,
+    LOW,
+    ROW,
+    SQUARES,
+    START,
+    STOP,
+    SUM,
+    IntArray,
+    ObjectPoints,
+    widen,
+)
 from singulation_perception.union_find import numbered_roots, single_sets, unite
 
 Points = NDArray[np.float32]
@@ -86,17 +99,15 @@ def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, 
     first, levels = levels_of(
         seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, apart, highest, min_size
     )
-    runs, level = _runs_on_levels(seen.xyz, seen.runs, seen.spans, surfaces.of_run, first, levels)
-    face, count = connected_runs(seen.xyz, runs, seen.spans, level, np.inf)
-    counts, heights, scatter, holes, boxes, level_of_face = _face_table(seen.xyz, runs, face, level, count)
+    runs, spans, level = _runs_on_levels(seen.xyz, seen.runs, seen.spans, surfaces.of_run, first, levels)
+    face, count = connected_runs(seen.xyz, runs, spans, level, np.inf)
+    counts, heights, scatter, holes, boxes, level_of_face = _face_table(runs, spans, face, level, count)
     surface = np.searchsorted(first, level_of_face, side="right").astype(np.int32) - 1
     return Faces(runs, face, surface, np.isfinite(levels[level_of_face, 0]), counts, heights, scatter, holes, boxes)
 
 
 @compiled
-def connected_runs(
-    xyz: Points, runs: IntArray, spans: NDArray[np.float32], kind: IntArray, step: float
-) -> tuple[IntArray, int]:
+def connected_runs(xyz: Points, runs: IntArray, spans: FloatArray, kind: IntArray, step: float) -> tuple[IntArray, int]:
     """Number of the connected set of each run: runs of one kind, above one another, at most ``step`` apart.
 
     ``spans`` are not looked at if ``step`` is infinite.
@@ -118,9 +129,9 @@ def connected_runs(
 
 
 @compiled_plain
-def _meet(xyz: Points, runs: IntArray, spans: NDArray[np.float32], one: int, two: int, step: float) -> bool:
+def _meet(xyz: Points, runs: IntArray, spans: FloatArray, one: int, two: int, step: float) -> bool:
     """Whether two runs in neighbouring rows have neighbours that differ by at most ``step``."""
-    if step == np.inf or max(spans[one, 1], spans[two, 1]) - min(spans[one, 0], spans[two, 0]) <= step:
+    if step == np.inf or max(spans[one, HIGH], spans[two, HIGH]) - min(spans[one, LOW], spans[two, LOW]) <= step:
         return True
     begin, end = max(runs[one, START], runs[two, START]), min(runs[one, STOP], runs[two, STOP])
     for column in range(begin, end):
@@ -132,14 +143,12 @@ def _meet(xyz: Points, runs: IntArray, spans: NDArray[np.float32], one: int, two
 
 
 @compiled
-def _sizes(
-    runs: IntArray, spans: NDArray[np.float32], surface: IntArray, count: int
-) -> tuple[IntArray, NDArray[np.float32]]:
+def _sizes(runs: IntArray, spans: FloatArray, surface: IntArray, count: int) -> tuple[IntArray, NDArray[np.float32]]:
     sizes = np.zeros(count, dtype=np.int32)
     tops = np.zeros(count, dtype=np.float32)
     for run in range(len(runs)):
         sizes[surface[run]] += runs[run, STOP] - runs[run, START]
-        tops[surface[run]] = max(tops[surface[run]], spans[run, 1])
+        tops[surface[run]] = max(tops[surface[run]], spans[run, HIGH])
     return sizes, tops
 
 
@@ -147,46 +156,51 @@ def _sizes(
 def _runs_on_levels(
     xyz: Points,
     runs: IntArray,
-    spans: NDArray[np.float32],
+    spans: FloatArray,
     surface: IntArray,
     first: IntArray,
-    levels: NDArray[np.float64],
-) -> tuple[IntArray, IntArray]:
-    """Runs cut where the level changes, without the points that lie on none."""
+    levels: FloatArray,
+) -> tuple[IntArray, FloatArray, IntArray]:
+    """Runs cut where the level changes, without the points that lie on none; their spans and levels."""
     cut = np.empty((len(xyz), 4), dtype=np.int32)
+    cut_spans = np.empty((len(xyz), 4))
     kind = np.empty(len(xyz), dtype=np.int32)
     count = 0
     for run in range(len(runs)):
         begin, end = first[surface[run]], first[surface[run] + 1]
         if begin == end:
             continue
-        level = level_at(levels, begin, end, spans[run, 0])
-        if level >= 0 and level == level_at(levels, begin, end, spans[run, 1]):  # the usual case, all of it
+        level = level_at(levels, begin, end, spans[run, LOW])
+        if level >= 0 and level == level_at(levels, begin, end, spans[run, HIGH]):  # the usual case, all of it
             for k in range(4):
-                cut[count, k] = runs[run, k]
+                cut[count, k], cut_spans[count, k] = runs[run, k], spans[run, k]
             kind[count] = level
             count += 1
             continue
         last = -1
         for column in range(runs[run, START], runs[run, STOP]):
             i = runs[run, FIRST] + column - runs[run, START]
-            level = level_at(levels, begin, end, xyz[i, 2])
+            height = np.float64(xyz[i, 2])
+            level = level_at(levels, begin, end, height)
             if level >= 0:
                 if level != last:
-                    cut[count, 0], cut[count, 1], cut[count, 3] = runs[run, ROW], column, i
+                    cut[count, ROW], cut[count, START], cut[count, FIRST] = runs[run, ROW], column, i
+                    cut_spans[count, LOW], cut_spans[count, HIGH] = height, height
+                    cut_spans[count, SUM], cut_spans[count, SQUARES] = 0.0, 0.0
                     kind[count] = level
                     count += 1
-                cut[count - 1, 2] = column + 1
+                cut[count - 1, STOP] = column + 1
+                widen(cut_spans, count - 1, height)
             last = level
-    return cut[:count], kind[:count]
+    return cut[:count], cut_spans[:count], kind[:count]
 
 
-@compiled_sums
+@compiled
 def _face_table(
-    xyz: Points, runs: IntArray, face: IntArray, level: IntArray, count: int
-) -> tuple[IntArray, NDArray[np.float64], NDArray[np.float64], IntArray, IntArray, IntArray]:
+    runs: IntArray, spans: FloatArray, face: IntArray, level: IntArray, count: int
+) -> tuple[IntArray, FloatArray, FloatArray, IntArray, IntArray, IntArray]:
     counts, holes = np.zeros(count, dtype=np.int32), np.zeros(count, dtype=np.int32)
-    heights, squares = np.zeros(count, dtype=np.float64), np.zeros(count, dtype=np.float64)
+    heights, squares = np.zeros(count), np.zeros(count)
     level_of_face = np.zeros(count, dtype=np.int32)
     box = np.empty((count, 4), dtype=np.int32)
     last = np.empty(count, dtype=np.int32)  # run of each face
@@ -201,15 +215,9 @@ def _face_table(
         box[one, 1] = runs[run, ROW] + 1
         box[one, 2] = min(box[one, 2], runs[run, START])
         box[one, 3] = max(box[one, 3], runs[run, STOP])
-        length = runs[run, STOP] - runs[run, START]
-        counts[one] += length
-        total, square = 0.0, 0.0
-        for i in range(runs[run, FIRST], runs[run, FIRST] + length):
-            height = np.float64(xyz[i, 2])
-            total += height
-            square += height * height
-        heights[one] += total
-        squares[one] += square
+        counts[one] += runs[run, STOP] - runs[run, START]
+        heights[one] += spans[run, SUM]
+        squares[one] += spans[run, SQUARES]
     for one in range(count):
         heights[one] /= counts[one]
         squares[one] = math.sqrt(max(squares[one] / counts[one] - heights[one] * heights[one], 0.0))

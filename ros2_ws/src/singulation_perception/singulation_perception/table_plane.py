@@ -29,6 +29,7 @@ class TablePlane:
         offset: height of the fitted plane above the expected one at the middle of the workspace [m], 0 without one.
         tilt: angle between fitted and expected plane [rad], 0 without an expected one.
         columns: (H, 2) first column and column after the last that may hold the workspace, in each row of the cloud.
+        pitch: distance of neighbouring points on the table, rather too large than too small [m].
     """
 
     table_from_camera: FloatArray
@@ -37,6 +38,7 @@ class TablePlane:
     offset: float
     tilt: float
     columns: IntArray
+    pitch: float
 
     @property
     def camera_plane(self) -> FloatArray:
@@ -75,9 +77,9 @@ def find_table(
     share = count / len(picked.located)
     _require_plane(share, noise, spread, parameters)
     if expected is None:
-        return TablePlane(_frame_from_plane(plane), noise, share, 0.0, 0.0, picked.columns)
+        return TablePlane(_frame_from_plane(plane), noise, share, 0.0, 0.0, picked.columns, picked.pitch)
     pose, offset, tilt = _near_expected(plane, parameters, expected)
-    return TablePlane(pose, noise, share, offset, tilt, picked.columns)
+    return TablePlane(pose, noise, share, offset, tilt, picked.columns, picked.pitch)
 
 
 def _free_reach(picked: CloudSample) -> float:
