@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from singulation_core import InvalidInputError
 from singulation_perception.cell_links import labelled, link_cells
-from singulation_perception.grid_columns import bounds, columns_of
+from singulation_perception.grid_columns import bounds, cells_of
 
 IntArray = NDArray[np.int32]
 
@@ -62,13 +62,12 @@ def _clusters(
     sizes: tuple[int, int],
 ) -> IntArray:
     """Labels of finite points between ``low`` and ``high``."""
-    points, depth, places, starts, neighbours = columns_of(cloud, tolerance, low, high)
-    component, first, count = link_cells(points, depth, starts, neighbours, np.float32(tolerance * tolerance))
-    rank = _ranks(np.bincount(component, np.diff(first), count), *sizes)
-    return np.asarray(labelled(places, first, rank[component]))
+    cells = cells_of(cloud, tolerance, low, high)
+    component, count = link_cells(cloud, cells, np.float32(tolerance * tolerance))
+    return np.asarray(labelled(cells.begin, component, _ranks(count, *sizes)))
 
 
-def _ranks(points: NDArray[np.float64], min_size: int, max_size: int) -> IntArray:
+def _ranks(points: NDArray[np.int64], min_size: int, max_size: int) -> IntArray:
     """Numbers of components by decreasing size; -1 for those of a wrong size."""
     order = np.argsort(-points, kind="stable")
     order = order[(points[order] >= min_size) & (points[order] <= max_size)]

@@ -1,4 +1,9 @@
-"""Grid of cells for Euclidean clustering: (x, y) columns, each with a short sorted list of z cells."""
+"""Grid of cells for Euclidean clustering: (x, y) columns, each with a short sorted list of z cells.
+
+Clouds come row by row, and neighbours in a row mostly share a cell. So runs of points, not points, are sorted.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,11 +12,13 @@ from singulation_core import InvalidInputError
 from singulation_perception.jit import compiled
 
 IntArray = NDArray[np.int32]
+Keys = NDArray[np.int64]
 Cloud = NDArray[np.float32]
 
 _EDGE = 0.99999 / np.sqrt(3.0)  # a little under 1: float32 rounding must not part the points of a cell
 PAD = 2  # cells farther apart than two hold no linked points
 _DENSE = 4_000_000  # columns of a table that is looked up directly
+_CHUNK = 96  # numbers that are compared with the bounds at once; a multiple of three
 
 # The half of the 5x5 neighbourhood that comes later, nearest first.
 _LATER = np.array(
@@ -19,21 +26,37 @@ _LATER = np.array(
     dtype=np.int64,
 )
 
-Columns = tuple[Cloud, IntArray, IntArray, IntArray, IntArray]
+
+class Cells(NamedTuple):
+    """Points of a cloud in c cells of m columns; a named tuple, because compiled code takes it.
+
+    Args:
+        begin: (r + 1,) first point of each run of points that follow each other in one cell.
+        order: (r,) runs by column and z.
+        of_run: (r,) cell of each run.
+        first: (c + 1,) first of the runs of each cell, in ``order``.
+        level: (c,) place of each cell in z.
+        column: (m + 1,) first cell of each column.
+        neighbours: (12, m) later neighbours of each column, nearest first, -1 where there is none.
+    """
+
+    begin: IntArray
+    order: IntArray
+    of_run: IntArray
+    first: IntArray
+    level: IntArray
+    column: IntArray
+    neighbours: IntArray
 
 
-def columns_of(cloud: Cloud, tolerance: float, low: NDArray[np.float64], high: NDArray[np.float64]) -> Columns:
-    """Points sorted into columns of cells.
+def cells_of(cloud: Cloud, tolerance: float, low: NDArray[np.float64], high: NDArray[np.float64]) -> Cells:
+    """Sorts points into cells that hold only points nearer to one another than the tolerance.
 
     Args:
         cloud: (n, 3) finite points, n > 0.
         tolerance: of the clustering [m].
         low: (3,) least coordinates.
         high: (3,) greatest coordinates.
-
-    Returns:
-        points in column order (n, 3), their z cells (n,), their places in ``cloud`` (n,), first point of each of the
-        m columns (m + 1,), and the later neighbours of each column (12, m), -1 where there is none.
 
     Raises:
         InvalidInputError: the tolerance is so small that cells cannot be numbered.
@@ -43,107 +66,137 @@ def columns_of(cloud: Cloud, tolerance: float, low: NDArray[np.float64], high: N
     if not (counts.max() < 2**30):
         raise InvalidInputError(f"tolerance: {tolerance} m is too small for a cloud {(high - low).max():.3g} m wide")
     width, columns = int(counts[0]), int(counts[0] * counts[1])
+    begin, key, depth = _runs(cloud, low, 1.0 / edge, width)
+    offsets = _LATER[:, 1] * width + _LATER[:, 0]
     if columns <= _DENSE:
-        key, depth = _dense_keys(cloud, low, 1.0 / edge, width)
-        slot, starts = _occupied(key, columns)
-        neighbours = _dense_neighbours(slot, len(starts) - 1, _LATER[:, 1] * width + _LATER[:, 0])
+        number, starts, kept, slot = _numbered(key, columns)
+        neighbours = _looked_up(kept, slot, offsets)
     else:
-        wide, depth = _wide_keys(cloud, low, 1.0 / edge, width)
-        kept, key, sizes = np.unique(wide, return_inverse=True, return_counts=True)
-        key, slot = key.astype(np.int32), np.arange(len(kept), dtype=np.int32)
-        starts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
-        neighbours = _sought_neighbours(kept, _LATER[:, 1] * width + _LATER[:, 0])
-    return *_in_order(cloud, key, slot, depth, starts), starts, neighbours
+        kept, number, sizes = np.unique(key, return_inverse=True, return_counts=True)
+        number, starts = number.astype(np.int32), np.concatenate(([0], np.cumsum(sizes))).astype(np.int32)
+        neighbours = _sought(kept, offsets)
+    order = _in_order(number, depth, starts)
+    of_run, first, level, column = _cells(order, depth, starts)
+    return Cells(begin, order, of_run, first, level, column, neighbours)
 
 
 @compiled
-def _dense_keys(cloud: Cloud, low: NDArray[np.float64], scale: float, width: int) -> tuple[IntArray, IntArray]:
-    key = np.empty(len(cloud), dtype=np.int32)
-    depth = np.empty(len(cloud), dtype=np.int32)
+def _runs(cloud: Cloud, low: NDArray[np.float64], scale: float, width: int) -> tuple[IntArray, Keys, IntArray]:
+    """First point of each run, and its column and place in z."""
+    begin = np.empty(len(cloud) + 1, dtype=np.int32)
+    key, depth = np.empty(len(cloud) + 1, dtype=np.int64), np.empty(len(cloud) + 1, dtype=np.int32)
+    x0, y0, z0 = low[0], low[1], low[2]
+    count, last_column, last_level = 0, np.int64(-1), np.int64(-1)
     for i in range(len(cloud)):
-        x = int((cloud[i, 0] - low[0]) * scale) + PAD
-        y = int((cloud[i, 1] - low[1]) * scale) + PAD
-        key[i] = y * width + x
-        depth[i] = int((cloud[i, 2] - low[2]) * scale)
-    return key, depth
-
-
-def _wide_keys(cloud: Cloud, low: NDArray[np.float64], scale: float, width: int) -> tuple[NDArray[np.int64], IntArray]:
-    """The same for clouds too wide for a table of columns."""
-    cells = ((cloud - low) * scale).astype(np.int64)
-    return (cells[:, 1] + PAD) * width + cells[:, 0] + PAD, cells[:, 2].astype(np.int32)
+        x, y = np.int64((cloud[i, 0] - x0) * scale) + PAD, np.int64((cloud[i, 1] - y0) * scale) + PAD
+        column, level = y * width + x, np.int64((cloud[i, 2] - z0) * scale)
+        begin[count], key[count], depth[count] = i, column, level  # without a branch: the next run writes over it
+        count += (column != last_column) | (level != last_level)
+        last_column, last_level = column, level
+    begin[count] = len(cloud)
+    return begin[: count + 1], key[:count], depth[:count]
 
 
 @compiled
-def _occupied(key: IntArray, columns: int) -> tuple[IntArray, IntArray]:
-    """Number of each occupied column (-1 elsewhere) and the first point of each in column order."""
+def _numbered(key: Keys, columns: int) -> tuple[IntArray, IntArray, Keys, IntArray]:
+    """Number of each run's column among the m that are occupied, (m + 1,) how many runs come before each column, key
+    of each column, and the number of every column, -1 where there is nothing.
+    """
     slot = np.zeros(columns, dtype=np.int32)
     for i in range(len(key)):
         slot[key[i]] += 1
-    starts = np.empty(len(key) + 1, dtype=np.int32)
+    starts, kept = np.empty(len(key) + 1, dtype=np.int32), np.empty(len(key), dtype=np.int64)
     count, total = 0, 0
     for column in range(columns):
         size = slot[column]
         slot[column] = -1
         if size > 0:
-            slot[column] = count
-            starts[count] = total
+            slot[column], starts[count], kept[count] = count, total, column
             count += 1
             total += size
     starts[count] = total
-    return slot, starts[: count + 1]
+    number = np.empty(len(key), dtype=np.int32)
+    for i in range(len(key)):
+        number[i] = slot[key[i]]
+    return number, starts[: count + 1], kept[:count], slot
 
 
 @compiled
-def _dense_neighbours(slot: IntArray, count: int, offsets: NDArray[np.int64]) -> IntArray:
-    neighbours = np.empty((len(offsets), count), dtype=np.int32)
-    for column in range(len(slot)):
-        if slot[column] >= 0:
-            for j in range(len(offsets)):
-                neighbours[j, slot[column]] = slot[column + offsets[j]]
+def _looked_up(kept: Keys, slot: IntArray, offsets: Keys) -> IntArray:
+    neighbours = np.empty((len(offsets), len(kept)), dtype=np.int32)
+    for j in range(len(offsets)):
+        for i in range(len(kept)):
+            neighbours[j, i] = slot[kept[i] + offsets[j]]
     return neighbours
 
 
-def _sought_neighbours(kept: NDArray[np.int64], offsets: NDArray[np.int64]) -> IntArray:
+def _sought(kept: Keys, offsets: Keys) -> IntArray:
+    """The same for clouds too wide for a table of columns."""
     wanted = kept + offsets[:, None]
     place = np.searchsorted(kept, wanted).clip(max=len(kept) - 1)
     return np.where(kept[place] == wanted, place, -1).astype(np.int32)
 
 
 @compiled
-def bounds(cloud: Cloud) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
-    """Least and greatest coordinates, (3,) each, and whether all are finite."""
-    low, high = np.empty(3), np.empty(3)
-    finite = True
-    for axis in range(3):
-        least, greatest, wrong = cloud[0, axis], cloud[0, axis], 0
-        for i in range(len(cloud)):
-            value = cloud[i, axis]
-            least = value if value < least else least
-            greatest = value if value > greatest else greatest
-            wrong += not (abs(value) < np.inf)
-        low[axis], high[axis] = least, greatest
-        finite = finite and wrong == 0
-    return low, high, finite
+def _in_order(number: IntArray, depth: IntArray, starts: IntArray) -> IntArray:
+    """Runs sorted by column and, within a column, by z; those of one cell stay in their order."""
+    following = starts.copy()
+    order, levels = np.empty(len(number), dtype=np.int32), np.empty(len(number), dtype=np.int32)
+    for i in range(len(number)):
+        level, begin = depth[i], starts[number[i]]
+        at = following[number[i]]
+        following[number[i]] += 1
+        while at > begin and levels[at - 1] > level:
+            levels[at], order[at] = levels[at - 1], order[at - 1]
+            at -= 1
+        levels[at], order[at] = level, i
+    return order
 
 
 @compiled
-def _in_order(
-    cloud: Cloud, key: IntArray, slot: IntArray, depth: IntArray, starts: IntArray
-) -> tuple[Cloud, IntArray, IntArray]:
-    """Points sorted by column and, within a column, by z cell."""
-    following = starts.copy()
-    cells, places = np.empty(len(cloud), dtype=np.int32), np.empty(len(cloud), dtype=np.int32)
-    for i in range(len(cloud)):
-        column, cell = slot[key[i]], depth[i]
-        at = following[column]
-        following[column] += 1
-        while at > starts[column] and cells[at - 1] > cell:
-            cells[at], places[at] = cells[at - 1], places[at - 1]
-            at -= 1
-        cells[at], places[at] = cell, i
-    points = np.empty((len(cloud), 3), dtype=np.float32)
-    for at in range(len(cloud)):
-        i = places[at]
-        points[at, 0], points[at, 1], points[at, 2] = cloud[i, 0], cloud[i, 1], cloud[i, 2]
-    return points, cells, places
+def _cells(order: IntArray, depth: IntArray, starts: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray]:
+    """Cell of each run, first run and place in z of each cell, first cell of each column."""
+    of_run = np.empty(len(order), dtype=np.int32)
+    first, level = np.empty(len(order) + 1, dtype=np.int32), np.empty(len(order), dtype=np.int32)
+    column = np.empty(len(starts), dtype=np.int32)
+    count = 0
+    for k in range(len(starts) - 1):
+        column[k] = count
+        for at in range(starts[k], starts[k + 1]):
+            run = order[at]
+            if at == starts[k] or depth[run] != level[count - 1]:
+                first[count], level[count] = at, depth[run]
+                count += 1
+            of_run[run] = count - 1
+    column[len(starts) - 1], first[count] = count, len(order)
+    return of_run, first[: count + 1], level[:count], column
+
+
+@compiled
+def bounds(cloud: Cloud) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
+    """Least and greatest coordinates, (3,) each, and whether all are finite.
+
+    Most points lie within the bounds of those before; whether a chunk of them does is counted without a branch.
+    """
+    numbers = cloud.reshape(-1)
+    least, greatest = np.empty(_CHUNK, dtype=np.float32), np.empty(_CHUNK, dtype=np.float32)
+    for k in range(_CHUNK):
+        least[k], greatest[k] = numbers[k % 3], numbers[k % 3]
+    finite = True
+    for begin in range(0, len(numbers), _CHUNK):
+        size, within = min(_CHUNK, len(numbers) - begin), 0
+        for k in range(size):
+            value = numbers[np.uintp(begin) + np.uintp(k)]
+            within += (value >= least[k]) & (value <= greatest[k])
+        if within == size:
+            continue
+        for k in range(size):
+            value = numbers[begin + k]
+            least[k % 3], greatest[k % 3] = min(least[k % 3], value), max(greatest[k % 3], value)
+            finite = finite and abs(value) < np.inf
+        for k in range(3, _CHUNK):
+            least[k], greatest[k] = least[k % 3], greatest[k % 3]
+    low, high = least[:3].astype(np.float64), greatest[:3].astype(np.float64)
+    for axis in range(3):
+        finite = finite and abs(low[axis]) < np.inf and abs(high[axis]) < np.inf
+    return low, high, finite

@@ -46,3 +46,38 @@ def test_too_small_and_too_large_clusters_are_left_out(smallest, largest, sizes)
     labels = euclidean_clusters(np.concatenate(groups), 0.01, smallest, largest)
     assert sorted(len(part) for part in partition(labels)) == sizes
     assert (labels == -1).sum() == 9 - sum(sizes)
+
+
+@given(st.integers(0, 10**6), st.floats(0.001, 0.02))
+@settings(max_examples=30, deadline=None)
+def test_points_in_rows_as_a_camera_sends_them(seed, tolerance):
+    random = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(0.0, 0.06, 0.001), np.arange(0.0, 0.05, 0.0012))
+    z = 0.02 * random.integers(0, 3, (8, 8)).repeat(6, axis=0).repeat(8, axis=1)[: x.shape[0], : x.shape[1]]
+    points = np.stack((x, y, z + random.normal(0.0, 0.0004, x.shape)), axis=-1).reshape(-1, 3).astype(np.float32)
+    points = points[random.uniform(size=len(points)) < 0.8]
+    assert partition(euclidean_clusters(points, tolerance)) == reference(points, tolerance)
+
+
+def test_labels_follow_the_size_and_then_the_first_point():
+    places = np.array((5, 2, 2, 0, 0, 5, 9, 7, 7), dtype=np.float32)
+    labels = euclidean_clusters(np.column_stack((places, -places, places)), 0.01)
+    np.testing.assert_array_equal(labels, (0, 1, 1, 2, 2, 0, 4, 3, 3))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("at", [0, 50, 199])
+def test_points_that_are_none_belong_to_no_cluster(bad, at):
+    points = np.random.default_rng(0).uniform(0.0, 0.05, (200, 3)).astype(np.float32)
+    points[at, 1] = bad
+    labels = euclidean_clusters(points, 0.005)
+    assert labels[at] == -1
+    others = np.delete(points, at, axis=0)
+    assert partition(np.delete(labels, at)) == reference(others, 0.005)
+    assert (euclidean_clusters(np.full((9, 3), bad, dtype=np.float32), 0.005) == -1).all()
+
+
+def test_a_cloud_too_wide_for_a_table_of_columns():
+    points = np.random.default_rng(1).uniform(0.0, 20.0, (3000, 3)).astype(np.float32)
+    points[1500:] = points[:1500] + np.float32(0.002)
+    assert partition(euclidean_clusters(points, 0.005)) == reference(points, 0.005)
