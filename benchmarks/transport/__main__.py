@@ -6,7 +6,6 @@ scripts/bench transport [--repeats 40] [--points half full] [--out FOLDER]
 import argparse
 import csv
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -16,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from benchmarks.perception.scenes import AREA, FULL, HALF, Scene, make_scene
-from benchmarks.transport.processes import ECHO, PERCEPTION, RELIABLE_ECHO, SETTINGS
+from benchmarks.transport.processes import ECHO, PERCEPTION, RELIABLE_ECHO, SETTINGS, environment
 
 from singulation_core.transforms import quaternion_of
 from singulation_node.domain import reserved_domain
@@ -75,12 +74,12 @@ def _row(scene: Scene, settings: str, receiver: str, repeats: int) -> Row:
     with tempfile.TemporaryDirectory() as folder, reserved_domain() as domain:
         path = Path(folder) / "cloud.npy"
         np.save(path, scene.points)
-        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+        variables = {**environment(settings), "ROS_DOMAIN_ID": str(domain)}
         arguments = _parameters(scene) if receiver == PERCEPTION else []
-        receiving = _start("processes", environment, settings, receiver, *arguments)
+        receiving = _start("processes", variables, settings, receiver, *arguments)
         try:
             words = (settings, str(path), str(repeats), str(receiving.pid))
-            sending = _start("sender", environment, *words, output=subprocess.PIPE)
+            sending = _start("sender", variables, *words, output=subprocess.PIPE)
             seen = json.loads(sending.communicate(timeout=_LIMIT)[0])
         finally:
             _stop(receiving)
@@ -114,10 +113,10 @@ def _stop(process: "subprocess.Popen[bytes]") -> None:
 
 
 def _start(
-    module: str, environment: dict[str, str], *arguments: str, output: int | None = None
+    module: str, variables: dict[str, str], *arguments: str, output: int | None = None
 ) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-m", f"benchmarks.transport.{module}", *arguments]
-    return subprocess.Popen(command, env=environment, stdout=output, stderr=None if output else subprocess.DEVNULL)
+    return subprocess.Popen(command, env=variables, stdout=output, stderr=None if output else subprocess.DEVNULL)
 
 
 def _parameters(scene: Scene) -> list[str]:

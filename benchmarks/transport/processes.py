@@ -4,12 +4,14 @@ import os
 import sys
 from typing import Any
 
+from singulation_node.large_messages import HEAPS_VARIABLE, PROFILE, PROFILE_VARIABLE, prepare_for_large_messages
+
+# isort: split
 from rclpy.node import Node
 from sensor_msgs.msg import PointCloud2
 from singulation_msgs.msg import Arrangement
 from std_msgs.msg import Header
 
-from singulation_node.large_messages import PROFILE, PROFILE_VARIABLE, prepare_for_large_messages
 from singulation_node.main import run_node
 from singulation_node.qos import SENSOR_IN, STATE
 from singulation_perception.perception_node import PerceptionNode
@@ -19,12 +21,22 @@ SETTINGS = (INSTALLED, PROFILE_ONLY, SHIPPED)
 ECHO, RELIABLE_ECHO, PERCEPTION = "echo", "echo, reliable", "perception_node"
 
 
+_USUAL_HEAPS = 8 * (os.cpu_count() or 1)  # what glibc allows by itself
+
+
+def environment(settings: str) -> dict[str, str]:
+    """Variables that a process with these settings needs from its start."""
+    variables = {name: value for name, value in os.environ.items() if name != PROFILE_VARIABLE}
+    if settings != SHIPPED:
+        variables[HEAPS_VARIABLE] = str(_USUAL_HEAPS)
+    if settings == PROFILE_ONLY:
+        variables[PROFILE_VARIABLE] = str(PROFILE)
+    return variables
+
+
 def apply(settings: str) -> None:
     """Prepare this process; before rclpy.init."""
-    os.environ.pop(PROFILE_VARIABLE, None)
-    if settings == PROFILE_ONLY:
-        os.environ[PROFILE_VARIABLE] = str(PROFILE)
-    elif settings == SHIPPED and not prepare_for_large_messages():
+    if settings == SHIPPED and not prepare_for_large_messages():
         raise SystemExit("not enough shared memory for the measurement")
 
 

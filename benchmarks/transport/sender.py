@@ -8,10 +8,12 @@ import sys
 import time
 from typing import Any
 
+from benchmarks.transport.processes import apply  # before ROS: keeps memory
+
+# isort: split
 import numpy as np
 import psutil
 import rclpy
-from benchmarks.transport.processes import apply
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import PointCloud2

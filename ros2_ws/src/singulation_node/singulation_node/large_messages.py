@@ -1,8 +1,10 @@
-"""Makes a process fit to send and receive clouds of tens of megabytes; called before rclpy is initialised.
+"""Makes a process fit to send and receive clouds of tens of megabytes.
 
-Measured (3.2 million points, 38 MB, best effort, one machine): as installed, not one cloud arrives; with the transport
-profile all do, in about 80 ms; with memory that is kept instead of fetched anew from the kernel for each of the six
-copies between two Python processes, in about 20 ms. ``scripts/bench transport`` repeats the measurement.
+Two things: a transport profile, which ``prepare_for_large_messages`` chooses before rclpy is initialised, and memory
+that is kept instead of fetched anew from the kernel for each of the six copies between two Python processes. Importing
+this module keeps it, and only where that happens before the import of ``rclpy``: loading ROS starts threads (LTTng's
+listeners), each with a heap of its own, which the threads of the middleware later share; such heaps give back what
+is freed, whatever the settings. ``scripts/bench transport`` measures both.
 """
 
 import ctypes
@@ -16,6 +18,7 @@ from xml.etree import ElementTree
 
 PROFILE = Path(__file__).with_name("fastdds_large_clouds.xml")
 PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+HEAPS_VARIABLE = "MALLOC_ARENA_MAX"  # of glibc; who sets it wants to manage the memory of the process himself
 
 _SHARED_MEMORY = Path("/dev/shm")
 _PROCESSES = 6  # of one cell that handle clouds, or inherit the profile from one that does
@@ -25,12 +28,11 @@ _NEVER_TRIM = 2**31 - 1
 
 
 def prepare_for_large_messages() -> bool:
-    """Choose the transport profile, unless the user chose one, and keep freed memory in the process.
+    """Choose the transport profile, unless the user chose one.
 
     Returns:
         Whether large messages will arrive reliably; if not, the reason has been printed.
     """
-    keep_memory()
     chosen = os.environ.get(PROFILE_VARIABLE)
     if chosen and chosen != str(PROFILE):
         return True
@@ -91,10 +93,13 @@ def remove_abandoned_segments() -> int:
 
 
 def keep_memory() -> None:
-    """Large blocks come from a heap that never shrinks: fresh pages for each would cost more than the copying."""
+    """Large blocks come from one heap that never shrinks: fresh pages for each would cost more than the copying."""
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt is None:  # not glibc
+    if mallopt is None or HEAPS_VARIABLE in os.environ:  # not glibc, or the user's choice
         return
     mallopt(_M_MMAP_MAX, 0)
     mallopt(_M_TRIM_THRESHOLD, _NEVER_TRIM)
     mallopt(_M_ARENA_MAX, 1)
+
+
+keep_memory()

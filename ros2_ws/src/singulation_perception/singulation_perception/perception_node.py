@@ -11,6 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from singulation_node.large_messages import prepare_for_large_messages  # before ROS: keeps memory
+
+# isort: split
 from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import PointCloud2
 from singulation_msgs.msg import Arrangement
@@ -20,7 +23,6 @@ from visualization_msgs.msg import MarkerArray
 from singulation_core import ResultCode, SingulationError
 from singulation_core.conversions import arrangement_to_msg
 from singulation_node.guard import guarded
-from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import SENSOR_IN, STATE

@@ -14,6 +14,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from singulation_node.large_messages import prepare_for_large_messages  # before ROS: keeps memory
+
+# isort: split
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -22,7 +25,6 @@ from rclpy.signals import SignalHandlerOptions
 
 from singulation_core import ResultCode, SingulationError
 from singulation_node.guard import guarded
-from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import plain_arguments
 from singulation_perception.bag_writing import BagRecorder
 

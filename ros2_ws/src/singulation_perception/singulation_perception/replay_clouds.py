@@ -12,6 +12,9 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
+from singulation_node.large_messages import prepare_for_large_messages  # before ROS: keeps memory
+
+# isort: split
 import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
@@ -26,7 +29,6 @@ from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, ResultCode, SingulationError
 from singulation_node.guard import guarded, guarded_service, report_failure
-from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import plain_arguments
 from singulation_node.spinning import spin_until
 from singulation_perception.cloud_messages import cloud_message

@@ -8,6 +8,9 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
+from singulation_node.large_messages import prepare_for_large_messages  # before ROS: keeps memory
+
+# isort: split
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -19,7 +22,6 @@ from trajectory_msgs.msg import JointTrajectory
 from singulation_core import ResultCode, SingulationError
 from singulation_node.diagnostics import Diagnostics
 from singulation_node.guard import guarded, guarded_service, report_failure
-from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.main import plain_arguments, run_node
 from singulation_node.parameters import ParameterSet
 from singulation_node.qos import COMMAND

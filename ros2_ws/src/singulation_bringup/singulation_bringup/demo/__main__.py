@@ -10,6 +10,9 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+from singulation_node.large_messages import prepare_for_large_messages  # before ROS: keeps memory
+
+# isort: split
 from singulation_bringup.demo.cell_part import CellPart
 from singulation_bringup.demo.observer import Observer
 from singulation_bringup.demo.options import DemoOptions, parse
@@ -21,7 +24,6 @@ from singulation_bringup.demo.terminal import complain, say
 from singulation_bringup.run_page import PAGE, write_page
 from singulation_core import ResultCode, SingulationError
 from singulation_node.domain import reserved_domain
-from singulation_node.large_messages import prepare_for_large_messages
 from singulation_perception.playback import Recording, find_recording
 
 _OWN_BAG = Path("share", "recordings", "sim_cell")
