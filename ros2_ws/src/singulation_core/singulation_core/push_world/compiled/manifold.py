@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled_part
+from singulation_core.jit import compiled_inline, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.types import Shapes, State
 
@@ -29,7 +29,7 @@ def _edge_gap(shapes: Shapes, state: State, edge: int, other: int) -> float:
     return float(least - nx * state.corners[edge, 0] - ny * state.corners[edge, 1])
 
 
-@compiled_part
+@compiled_inline
 def separation(shapes: Shapes, state: State, one: int, other: int, enough: float) -> tuple[float, int]:
     """Largest gap over the edges of both, and that edge; stops as soon as a gap is larger than ``enough``."""
     best, best_edge = -np.inf, state.axes[one, other]
@@ -68,7 +68,7 @@ def touching_edge(shapes: Shapes, state: State, body: int, nx: float, ny: float)
     return int(found)
 
 
-@compiled_part
+@compiled_inline
 def polygon_contacts(
     shapes: Shapes, state: State, one: int, other: int, margin: float, points: FloatArray
 ) -> tuple[int, int, float, float]:
@@ -128,7 +128,7 @@ def _clip(
     return x + share * dx, y + share * dy, 0.0 <= share <= 1.0
 
 
-@compiled_part
+@compiled_inline
 def disc_contact(
     shapes: Shapes, state: State, body: int, x: float, y: float, radius: float
 ) -> tuple[float, float, float, float]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled, compiled_part
+from singulation_core.jit import compiled, compiled_inline, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.island import find_contacts, pusher_gap
 from singulation_core.push_world.compiled.manifold import place, separation
@@ -10,6 +10,7 @@ from singulation_core.push_world.compiled.solver import remember, solve, warm_st
 from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State
 
 DONE, BLOCKED, DIVERGED = 0, 1, 2
+_ARRIVED = 1e-12  # what is left of the way then is a rounding error
 
 
 @compiled
@@ -109,31 +110,40 @@ def _roll_out(
     shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, numbers: Numbers, length: float
 ) -> int:
     """One push, after ``_begin``; the poses are left in ``state``."""
-    n = len(shapes.radii) - 1
-    left, found = length, 0
-    while _nearest(shapes, state) < -numbers.touching:
-        if left - length >= numbers.retreat:
-            return BLOCKED
-        state.poses[n, 0] -= 0.5 * numbers.step
-        left += 0.5 * numbers.step
-        place(shapes, state, n)
-    while left > 1e-12:
+    back = _moved_back(shapes, state, numbers)
+    if back < 0.0:
+        return BLOCKED
+    n, left, found, settling = len(shapes.radii) - 1, length + back, 1, numbers.settle_steps
+    found = 0
+    while left > _ARRIVED or settling > 0:
         gap = _nearest(shapes, state) if found == 0 else 0.0
-        if gap > 1.5 * numbers.step:  # nothing to push yet: jump
+        if left > _ARRIVED and gap > 1.5 * numbers.step:  # nothing to push yet: jump
             jump = min(gap - 0.5 * numbers.step, left)
             state.poses[n, 0] += jump
             left -= jump
             place(shapes, state, n)
             continue
-        advance = min(numbers.step, left)
+        advance = min(numbers.step, left) if left > _ARRIVED else 0.0
         left -= advance
+        settling -= 1 if advance == 0.0 else 0
         found = _step(shapes, state, contacts, scratch, numbers, advance)
-    for _ in range(numbers.settle_steps):
-        _step(shapes, state, contacts, scratch, numbers, 0.0)
     for body in range(n):
         if not (abs(state.poses[body, 0]) + abs(state.poses[body, 1]) + abs(state.poses[body, 2]) < 1e6):
             return DIVERGED
     return DONE
+
+
+@compiled_part
+def _moved_back(shapes: Shapes, state: State, numbers: Numbers) -> float:
+    """Move a pusher that would start on a block back until it is free; how far, negative if that is too far."""
+    n, back = len(shapes.radii) - 1, 0.0
+    while _nearest(shapes, state) < -numbers.touching:
+        if back >= numbers.retreat:
+            return -1.0
+        state.poses[n, 0] -= 0.5 * numbers.step
+        back += 0.5 * numbers.step
+        place(shapes, state, n)
+    return back
 
 
 @compiled_part
@@ -145,12 +155,12 @@ def _nearest(shapes: Shapes, state: State) -> float:
     return gap
 
 
-@compiled_part
+@compiled_inline
 def _step(shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, numbers: Numbers, advance: float) -> int:
     """Move the pusher by ``advance`` and the blocks with it; how many blocks are in contact."""
     n = len(shapes.radii) - 1
     found = find_contacts(shapes, state, contacts, scratch, 1.5 * advance + numbers.slop)
-    for k in range(found):
+    for k in range(1, found):
         for axis in range(3):
             state.motion[scratch.island[0, k], axis] = 0.0
     state.motion[n, 0], state.motion[n, 1], state.motion[n, 2] = advance, 0.0, 0.0
@@ -160,9 +170,7 @@ def _step(shapes: Shapes, state: State, contacts: Contacts, scratch: Scratch, nu
     remember(state, contacts)
     for k in range(found):
         _move(shapes, state, scratch.island[0, k])
-    state.poses[n, 0] += advance
-    place(shapes, state, n)
-    return found
+    return found - 1
 
 
 @compiled_part

@@ -1,13 +1,13 @@
 """Motion of the blocks in one step: least kinetic energy under contacts with friction (projected Gauss-Seidel)."""
 
-from singulation_core.jit import compiled_part
+from singulation_core.jit import compiled_inline, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_core.push_world.compiled.types import Contacts, Numbers, Shapes, State
 
 _STILL = 1e-4  # inner units; the solver stops when no contact corrects more
 
 
-@compiled_part
+@compiled_inline
 def add_contact(
     shapes: Shapes,
     state: State,
