@@ -66,9 +66,7 @@ def blocks_of(
     every = FaceBlocks(seen, faces, maps, rings, view, parameters, noise)
     found = every.found(_suspects(faces, chosen, noise), dropped)
     found, dropped["stacked"] = settled(_with_size_doubts(found, parameters.max_extent), band)
-    objects = [
-        PlanarObject(i, one.outline, one.height, one.count, min(1.0, one.confidence)) for i, one in enumerate(found)
-    ]
+    objects = [PlanarObject(i, one.outline, one.height, one.count, one.confidence) for i, one in enumerate(found)]
     return Blocks(objects, [one.surface for one in found], surfaces, dropped)
 
 

@@ -8,9 +8,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled_part
+
+Flags = NDArray[np.bool_]
 
 _USUAL_SUPPORT = 0.9  # share of the outline with points; corners never have them
 _USUAL_FILL = 0.8
@@ -21,35 +24,34 @@ FEWEST_TO_COMPARE = 4
 FLUSH, STACKED, CLIPPED = 0.45, 0.3, 0.8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evidence:
-    """What speaks for an outline.
+    """What speaks for each of n outlines.
 
     Args:
-        supported: share of its length with points of the rim or of a seam near it.
-        filled: share of the pixels of its face that have points.
-        flat: whether the face is a level with many points.
-        concave: whether it covers a pocket that no cut explains.
-        truncated: whether it ends at the border of the workspace or of the image.
-        lead: how much dearer the next best way to cut was, for the most doubtful seam beside it [m].
+        supported: (n,) share of its length with points of the rim or of a seam near it.
+        filled: (n,) share of the pixels of its face that have points.
+        flat: (n,) whether the face is a level with many points.
+        concave: (n,) whether it covers a pocket that no cut explains.
+        truncated: (n,) whether it ends at the border of the workspace or of the image.
+        lead: (n,) how much dearer the next best way to cut was, for the most doubtful seam beside it [m].
     """
 
-    supported: float
-    filled: float
-    flat: bool
-    concave: bool
-    truncated: bool
-    lead: float
+    supported: FloatArray
+    filled: FloatArray
+    flat: Flags
+    concave: Flags
+    truncated: Flags
+    lead: FloatArray
 
     @property
-    def confidence(self) -> float:
-        """0..1."""
-        value = 0.3 + 0.7 * min(1.0, self.supported / _USUAL_SUPPORT)
-        value *= min(1.0, self.filled / _USUAL_FILL)
-        value *= 0.55 + 0.45 * min(1.0, self.lead / _CLEAR_LEAD)
-        for doubt in (not self.flat, self.concave, self.truncated):
-            value *= 0.5 if doubt else 1.0
-        return float(value)
+    def confidence(self) -> FloatArray:
+        """(n,) 0..1."""
+        value = 0.3 + 0.7 * np.minimum(1.0, self.supported / _USUAL_SUPPORT)
+        value *= np.minimum(1.0, self.filled / _USUAL_FILL)
+        value *= 0.55 + 0.45 * np.minimum(1.0, self.lead / _CLEAR_LEAD)
+        doubts = (~self.flat).astype(np.int64) + self.concave + self.truncated
+        return np.minimum(1.0, value * 0.5**doubts)
 
 
 @compiled_part

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
+from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.boundaries import FaceMaps
@@ -14,7 +15,7 @@ from singulation_perception.face_image import face_image
 from singulation_perception.face_rings import FaceRings
 from singulation_perception.found_block import FoundBlock, shares
 from singulation_perception.hidden import View, without_hidden
-from singulation_perception.object_points import ObjectPoints
+from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.outlines import Outlines, outlines_of
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.rings import Scale
@@ -68,18 +69,18 @@ class FaceBlocks:
         """
         slivers = self._slivers()
         dropped["sliver"] += sum(slivers)
-        scales = [self._scale(k) for k in range(len(slivers))]
         pieces = [
             _Piece(k, ring, lead)
             for k, sliver in enumerate(slivers)
             if not sliver
-            for ring, lead in self._rings(k, scales[k], suspects[k])
+            for ring, lead in self._rings(k, suspects[k])
         ]
-        measures = [(self._tolerance(scales[piece.face]), *scales[piece.face]) for piece in pieces]
-        outlines = outlines_of([piece.ring for piece in pieces], measures)
+        face = np.array([piece.face for piece in pieces], dtype=np.int32)
+        outlines = outlines_of([piece.ring for piece in pieces], self._measures()[face])
+        confidence = self._evidence(face, pieces, outlines).confidence.tolist()
         found: list[FoundBlock] = []
         for k, members in groupby(range(len(pieces)), lambda i: pieces[i].face):
-            blocks = self._blocks(k, scales[k], [(pieces[i], i) for i in members], outlines)
+            blocks = self._blocks(k, [(outlines.outline(i), confidence[i]) for i in members])
             dropped["shapeless"] += not blocks
             found += blocks
         return found
@@ -94,28 +95,29 @@ class FaceBlocks:
         pitch = float(self.rings.pitch[k])
         return Scale(pitch, self.parameters.edge_growth * pitch, float(self.rings.roughness[k]))
 
-    def _tolerance(self, scale: Scale) -> float:
-        return self.parameters.outline_tolerance or max(_TOLERANCE_IN_PITCHES * scale.pitch, scale.roughness)
+    def _measures(self) -> FloatArray:
+        """(k, 4) tolerance of Douglas-Peucker and scale of each face [m]."""
+        pitch, roughness = self.rings.pitch, self.rings.roughness
+        measures = np.empty((len(pitch), 4))
+        measures[:, 0] = self.parameters.outline_tolerance or np.maximum(_TOLERANCE_IN_PITCHES * pitch, roughness)
+        measures[:, 1], measures[:, 2], measures[:, 3] = pitch, self.parameters.edge_growth * pitch, roughness
+        return measures
 
-    def _blocks(self, k: int, scale: Scale, members: list[tuple[_Piece, int]], outlines: Outlines) -> list[FoundBlock]:
-        """Blocks of face k; none if its rim gives no polygon."""
-        drawn = [(piece, i, outlines.outline(i)) for piece, i in members]
-        good = [(piece, i, outline) for piece, i, outline in drawn if outline is not None]
+    def _blocks(self, k: int, members: list[tuple[FloatArray | None, float]]) -> list[FoundBlock]:
+        """Blocks of face k from their outlines and confidences; none if its rim gives no polygon."""
+        good = [(outline, confidence) for outline, confidence in members if outline is not None]
         if not good:
             return []
-        counts, heights = self._shares(k, [outline for _, _, outline in good])
-        face = int(self.maps.faces[k])
-        surface = int(self.faces.surface[face])
-        blocks = []
-        for (piece, i, outline), count, height in zip(good, counts, heights, strict=True):
-            concave = float(outlines.concave[i]) * PER_AREA
-            evidence = self._evidence(k, scale, outline, float(outlines.supported[i]), concave, piece.lead)
-            blocks.append(FoundBlock(outline, height, count, evidence.confidence, surface))
-        return blocks
+        counts, heights = self._shares(k, [outline for outline, _ in good])
+        surface = int(self.faces.surface[self.maps.faces[k]])
+        return [
+            FoundBlock(outline, height, count, confidence, surface)
+            for (outline, confidence), count, height in zip(good, counts, heights, strict=True)
+        ]
 
-    def _rings(self, k: int, scale: Scale, suspects: Suspects) -> Iterator[tuple[FloatArray, float]]:
+    def _rings(self, k: int, suspects: Suspects) -> Iterator[tuple[FloatArray, float]]:
         """Rims of the blocks of one face, and the lead of the most doubtful seam of each [m]."""
-        ring = self.rings.ring(k)
+        ring, scale = self.rings.ring(k), self._scale(k)
         pixels = self.rings.pixels[self.rings.begin[k] : self.rings.begin[k + 1]]
         cutting = self.parameters.split_touching
         concave = bool(self.rings.concave[k] > 0.0)
@@ -140,34 +142,33 @@ class FaceBlocks:
         counts, heights = shares(self.maps.image(k), self.seen.xyz, outlines)
         return [int(count) for count in counts], [max(0.0, float(height)) for height in heights]
 
-    def _evidence(
-        self, k: int, scale: Scale, outline: FloatArray, supported: float, concave: float, lead: float
-    ) -> Evidence:
+    def _evidence(self, k: IntArray, pieces: list[_Piece], outlines: Outlines) -> Evidence:
+        """For the outlines of all pieces, which are parts of faces ``k``."""
         face = self.maps.faces[k]
-        count, holes = float(self.faces.count[face]), float(self.faces.holes[face])
-        whole = not self.rings.concave[k] > 0.0
+        count, holes = self.faces.count[face], self.faces.holes[face]
+        whole = ~(self.rings.concave[k] > 0.0)
         return Evidence(
-            supported=supported,
-            filled=count / (count + holes) if whole else 1.0,
-            flat=bool(self.faces.flat[face]),
-            concave=not whole and concave >= CONVEX,
-            truncated=self._at_border(k, outline, scale.pitch),
-            lead=lead,
+            supported=outlines.supported,
+            filled=np.where(whole, count / np.maximum(count + holes, 1), 1.0),
+            flat=self.faces.flat[face],
+            concave=~whole & (outlines.concave * PER_AREA >= CONVEX),
+            truncated=self._at_border(k, outlines.box),
+            lead=np.array([piece.lead for piece in pieces]),
         )
 
-    def _at_border(self, k: int, outline: FloatArray, pitch: float) -> bool:
-        limits = self.parameters.workspace
-        if limits is not None:
-            margin = _BORDER * pitch
-            across, up = zip(*outline.tolist(), strict=True)
-            inside = min(across) > limits[0] + margin and max(across) < limits[1] - margin
-            if not (inside and min(up) > limits[2] + margin and max(up) < limits[3] - margin):
-                return True
-        if self.view.cloud is None:
-            return False
-        rows, columns = self.view.cloud.height, self.view.cloud.width
-        top, bottom, left, right = self.faces.box[self.maps.faces[k]]
-        return bool(min(top, left) < _BORDER or bottom > rows - _BORDER or right > columns - _BORDER)
+    def _at_border(self, k: IntArray, box: FloatArray) -> NDArray[np.bool_]:
+        """Which outlines, by their boxes, end at the border of the workspace or of the image; they are of faces k."""
+        at_border = np.zeros(len(k), dtype=bool)
+        if self.parameters.workspace is not None:
+            inwards = np.array((1.0, -1.0, 1.0, -1.0))
+            inside = (box - self.parameters.workspace) * inwards > _BORDER * self.rings.pitch[k, np.newaxis]
+            at_border |= ~inside.all(axis=1)
+        if self.view.cloud is not None:
+            top, bottom, left, right = self.faces.box[self.maps.faces[k]].T
+            rows, columns = self.view.cloud.height, self.view.cloud.width
+            at_border |= np.minimum(top, left) < _BORDER
+            at_border |= (bottom > rows - _BORDER) | (right > columns - _BORDER)
+        return at_border
 
 
 def _lead(piece: FloatArray, result: Split, scale: Scale) -> float:

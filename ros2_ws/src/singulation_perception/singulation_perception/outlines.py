@@ -27,12 +27,14 @@ class Outlines:
         first: (n + 1,) first corner of each; fewer than three where a ring has no area.
         supported: (n,) share of the length of each outline with points of its ring near it.
         concave: (n,) area between each ring and its hull, roughness apart [m^2].
+        box: (n, 4) least and greatest x, least and greatest y of each outline [m].
     """
 
     corners: FloatArray
     first: IntArray
     supported: FloatArray
     concave: FloatArray
+    box: FloatArray
 
     def outline(self, k: int) -> FloatArray | None:
         """(k, 2) outline of ring k [m], None if it has no area."""
@@ -40,26 +42,26 @@ class Outlines:
         return self.corners[begin:end] if end - begin >= 3 else None
 
 
-def outlines_of(rings: list[FloatArray], measures: list[tuple[float, float, float, float]]) -> Outlines:
+def outlines_of(rings: list[FloatArray], measures: FloatArray) -> Outlines:
     """Fits a convex polygon to each ring; one call for all, because calls cost more than the fits.
 
     Args:
         rings: (m, 2) rims of faces or of parts of them, counter-clockwise [m].
-        measures: of each: tolerance of Douglas-Peucker, no finer detail is kept, and the three lengths of its
+        measures: (n, 4) of each: tolerance of Douglas-Peucker, no finer detail is kept, and the three lengths of its
             ``Scale`` [m].
     """
     begin = np.zeros(len(rings) + 1, dtype=np.int32)
     np.cumsum([len(ring) for ring in rings], out=begin[1:])
     points = np.concatenate(rings) if rings else np.empty((0, 2))
-    return Outlines(*_outlines(points, begin, np.array(measures, dtype=np.float64).reshape(-1, 4)))
+    return Outlines(*_outlines(points, begin, measures))
 
 
 @compiled
 def _outlines(
     points: FloatArray, begin: IntArray, measures: FloatArray
-) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
     corners, first = np.empty((len(points), 2)), np.zeros(len(begin), dtype=np.int32)
-    supported, concave = np.zeros(len(measures)), np.zeros(len(measures))
+    supported, concave, box = np.zeros(len(measures)), np.zeros(len(measures)), np.zeros((len(measures), 4))
     count = 0
     for k in range(len(measures)):
         ring = points[begin[k] : begin[k + 1]]
@@ -67,13 +69,17 @@ def _outlines(
         hull = hull_indices(ring)
         if len(hull) >= 3:
             outline = _fitted(ring, hull, measures[k, 0], scale)
+            box[k, 0], box[k, 1], box[k, 2], box[k, 3] = np.inf, -np.inf, np.inf, -np.inf
             for i in range(len(outline)):
-                corners[count, 0], corners[count, 1] = outline[i, 0], outline[i, 1]
+                x, y = outline[i, 0], outline[i, 1]
+                corners[count, 0], corners[count, 1] = x, y
+                box[k, 0], box[k, 1] = min(box[k, 0], x), max(box[k, 1], x)
+                box[k, 2], box[k, 3] = min(box[k, 2], y), max(box[k, 3], y)
                 count += 1
             concave[k] = concave_area(ring, hull, scale.roughness)
             supported[k] = supported_share(outline, ring, scale.roughness + scale.growth, scale.pitch)
         first[k + 1] = count
-    return corners[:count], first, supported, concave
+    return corners[:count], first, supported, concave, box
 
 
 @compiled_part
