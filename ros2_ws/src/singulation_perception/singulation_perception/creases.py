@@ -41,13 +41,14 @@ def groove_line(image: FaceImage, pitch: float) -> FloatArray | None:
 def _holes(point: IntArray) -> FloatArray:
     """(h, 2) rows and columns of pixels without a point between the first and the last point of row and column."""
     rows, columns = point.shape
-    top, bottom = np.empty(columns, dtype=np.int64), np.empty(columns, dtype=np.int64)
+    top, bottom = np.empty(columns, dtype=np.int32), np.empty(columns, dtype=np.int32)
     for column in range(columns):
         top[column], bottom[column] = rows, -1
-        for row in range(rows):
-            if point[row, column] >= 0:
-                top[column] = min(top[column], row)
-                bottom[column] = row
+    for row in range(rows):
+        for column in range(columns):
+            there = point[row, column] >= 0
+            top[column] = min(top[column], row if there else rows)
+            bottom[column] = row if there else bottom[column]
     holes = np.empty((rows * columns, 2))
     count = 0
     for row in range(rows):
