@@ -37,6 +37,7 @@ setup(
             "singulate_node = singulation_bringup.singulate_node:main",
             "compile_kernels = singulation_bringup.commands.compile_kernels:main",
             "status = singulation_bringup.commands.status:main",
+            "operate = singulation_bringup.commands.operate:main",
             "calibrate = singulation_bringup.commands.calibrate:main",
             "bring_up = singulation_bringup.commands.bring_up:main",
             "dry_run = singulation_bringup.dry_run.dry_run:main",

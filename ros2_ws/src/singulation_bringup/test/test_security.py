@@ -51,7 +51,7 @@ def test_orders_are_heard_by_the_robot_only():
 
 
 def test_the_dry_run_may_not_even_ask_for_a_motion():
-    for name in ("dry_run", "planner_node", "perception_node", "status", "calibrate"):
+    for name in ("dry_run", "planner_node", "perception_node", "status", "operate", "calibrate"):
         assert not allowed(RIGHTS, name, "publish", "rq/execute_push/_action/send_goalRequest")
 
 

@@ -39,7 +39,7 @@ class CommandNode:
                 args=list(arguments or []), context=self._context, signal_handler_options=SignalHandlerOptions.NO
             )
             for number in (signal.SIGINT, signal.SIGTERM):
-                signal.signal(number, lambda *_: self._interrupted.set())
+                signal.signal(number, lambda *_: self.interrupt())
         self.node = rclpy.create_node(name, context=self._context, start_parameter_services=False)
         self._executor = MultiThreadedExecutor(num_threads=2, context=self._context)
         self._executor.add_node(self.node)
@@ -76,6 +76,10 @@ class CommandNode:
 
         self.node.create_subscription(kind, topic, safe, qos)
 
+    def interrupt(self) -> None:
+        """What Ctrl-C does: whoever waits stops waiting."""
+        self._interrupted.set()
+
     def pause(self, seconds: float) -> None:
         """Let time pass.
 
@@ -97,6 +101,15 @@ class CommandNode:
                 raise SingulationError(ResultCode.TIMEOUT, f"{what}: nothing within {timeout:g} s")
             self.pause(_POLL)
         return value
+
+    def settle(self, condition: Callable[[], Value | None], timeout: float) -> bool:
+        """Whether the condition comes true in time, whatever Ctrl-C says: for what has to end in order."""
+        deadline = time.monotonic() + timeout
+        while not condition():
+            if time.monotonic() > deadline:
+                return False
+            self._stop.wait(_POLL)
+        return True
 
     def call(self, kind: Any, name: str, request: Any, *, ready: float, answer: float) -> Any:
         """Answer of a service.

@@ -1,0 +1,135 @@
+"""Goals and services of a running cell, for machines without the ``ros2`` command.
+
+singulate: separates what lies on the table and shows every push. Ctrl-C stops the robot and ends the goal.
+halt: stops the robot; no emergency stop.
+trigger_frame: takes one cloud.
+reset: puts the blocks of the simulated cell back.
+Exit code 0: done; 1: not, and why.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from rclpy.action import ActionClient
+from singulation_msgs.action import Singulate
+from std_srvs.srv import Trigger
+
+from singulation_bringup.commands.command_node import CommandNode
+from singulation_bringup.commands.status import outcome_text
+from singulation_core import ResultCode, SingulationError, contact_mode, conversions
+from singulation_node.main import plain_arguments
+
+_SERVICES = ("halt", "trigger_frame", "reset")
+_PER_PUSH = 120.0  # s, longest wait for the next push; the coordinator has its own, shorter ones
+_STOP = 30.0  # s, for the robot to stand after Ctrl-C
+
+
+def ask(command: CommandNode, name: str, timeout: float) -> str:
+    """What a service answers.
+
+    Raises:
+        SingulationError: ``TIMEOUT``; ``REJECTED`` if it says that it did not work.
+    """
+    answer = command.call(Trigger, name, Trigger.Request(), ready=timeout, answer=timeout)
+    if not answer.success:
+        raise SingulationError(ResultCode.REJECTED, f"{name}: {answer.message}")
+    return f"{name}: {answer.message or 'done'}"
+
+
+def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
+    """Result of a goal; what happens meanwhile is printed.
+
+    Raises:
+        SingulationError: ``TIMEOUT`` if there is no coordinator or it falls silent, ``REJECTED`` if it does not want
+            the goal, ``CANCELLED`` on Ctrl-C, once the goal has ended.
+    """
+    news: list[Any] = []
+    client = ActionClient(command.node, Singulate, "singulate")
+    command.wait(client.server_is_ready, timeout, "action singulate")
+    sent = client.send_goal_async(goal, feedback_callback=lambda message: news.append(message.feedback))
+    command.wait(sent.done, timeout, "answer of singulate")
+    handle = sent.result()
+    if not handle.accepted:
+        raise SingulationError(ResultCode.REJECTED, "singulate_node rejected the goal; its log says why")
+    ended = handle.get_result_async()
+    try:
+        while not ended.done():
+            command.wait(lambda: ended.done() or news, _PER_PUSH, "the next push")
+            while news:
+                print(progress_text(news.pop(0)), flush=True)
+    except SingulationError as error:
+        handle.cancel_goal_async()
+        command.settle(ended.done, _STOP)
+        raise error
+    return ended.result().result
+
+
+def progress_text(feedback: Any) -> str:
+    """Feedback in a line."""
+    gap = f"{1e3 * feedback.smallest_gap:.1f} mm"
+    return f"{feedback.pushes_done} pushes: s(A) {feedback.singulation_distance:.3f}, smallest gap {gap}"
+
+
+def result_text(result: Any) -> str:
+    """How a goal ended, with its pushes."""
+    pushes = [f"  push {number}: {outcome_text(one)}" for number, one in enumerate(result.outcomes, 1)]
+    return "\n".join((*pushes, f"{ResultCode(result.code).name}: {result.message or 'separated'}"))
+
+
+def goal_of(options: argparse.Namespace) -> Any:
+    """The goal that the command line describes."""
+    return Singulate.Goal(
+        max_pushes=options.max_pushes,
+        min_gap=options.min_gap,
+        policy=options.policy,
+        contact_mode=conversions.contact_mode_to_msg(contact_mode(options.contact_mode)),
+    )
+
+
+def parse(arguments: Sequence[str]) -> argparse.Namespace:
+    """Options from the command line."""
+    parser = argparse.ArgumentParser(
+        prog="operate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--timeout", type=float, default=20.0, help="longest wait for an answer [s] (default 20)")
+    what = parser.add_subparsers(dest="what", required=True)
+    goal = what.add_parser("singulate", help="separate the blocks")
+    goal.add_argument("--max-pushes", type=int, default=30, help="at most (default 30)")
+    goal.add_argument("--min-gap", type=float, default=0.0, help="[m] between any two blocks (default: the node's)")
+    goal.add_argument("--policy", default="", help="default: the node's")
+    goal.add_argument("--contact-mode", default="single_point", help="single_point, edge or two_point")
+    for name in _SERVICES:
+        what.add_parser(name, help=f"the service {name}")
+    return parser.parse_args(list(arguments))
+
+
+def run(command: CommandNode, options: argparse.Namespace) -> int:
+    """Do it; the exit code.
+
+    Raises:
+        SingulationError: why it did not work.
+    """
+    if options.what != "singulate":
+        print(ask(command, options.what, options.timeout))
+        return 0
+    result = singulate(command, goal_of(options), options.timeout)
+    print(result_text(result))
+    return 0 if result.code == ResultCode.OK else 1
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Entry point."""
+    arguments = list(sys.argv if args is None else args)
+    options = parse(plain_arguments(arguments))
+    try:
+        with CommandNode("operate", arguments) as command:
+            return run(command, options)
+    except SingulationError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
