@@ -4,6 +4,9 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from numba import njit
+from numba.core.dispatcher import Dispatcher
+
+from singulation_core.claimed_cache import ClaimedCache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -16,7 +19,7 @@ def compiled(function: Function) -> Function:
     Such a function needs no reference counts. With them, calls that pass two dozen arrays took three quarters of the
     time of a push; a Numba that does not know the option compiles the same function, only slower.
     """
-    return _compiled(function, cache=True)
+    return kept(_compiled(function))
 
 
 def compiled_part(function: Function) -> Function:
@@ -38,8 +41,16 @@ def compiled_inline(function: Function) -> Function:
 
 def compiled_maker(function: Function) -> Function:
     """As ``compiled``, for a function that makes arrays: it counts references."""
-    done: Function = njit(**_USUAL, cache=True)(function)
-    return done
+    done: Function = njit(**_USUAL)(function)
+    return kept(done)
+
+
+def kept(function: Function) -> Function:
+    """Keep on disk what is compiled of a function, in a cache that processes share."""
+    dispatcher: Any = function
+    if isinstance(dispatcher, Dispatcher):  # a plain function where Numba is switched off
+        dispatcher._cache = ClaimedCache(dispatcher.py_func)
+    return function
 
 
 def _compiled(function: Function, **options: bool) -> Function:

@@ -53,12 +53,15 @@ def run_node(factory: NodeFactory, args: Sequence[str] | None = None, threads: i
         node = factory()
         try:
             executor.add_node(node)
-            wanted = isinstance(node, ManagedNode) and (autostart or node.autostart)
+            managed = isinstance(node, ManagedNode)
+            if managed:
+                node.own_process = True
+            wanted = managed and (autostart or node.autostart)
             configured = not wanted or _configure(node, starting, stop)
             if not configured or (wanted and node.trigger_activate() != TransitionCallbackReturn.SUCCESS):
                 return 1
             spin_until(executor, stop, partial(report_failure, node, "executor"))
-            if isinstance(node, ManagedNode) and node.is_active:
+            if managed and node.is_active:
                 _shut_down_while_spinning(executor, node)
         finally:
             executor.remove_node(node)

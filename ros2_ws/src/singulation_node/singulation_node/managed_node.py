@@ -37,6 +37,7 @@ class ManagedNode(LifecycleNode, Generic[SettingsType]):
         self._configured: list[Any] = []
         self._activated: list[Any] = []
         self.is_active = False
+        self.own_process = False  # whether nothing else lives in it, so that its memory may be tuned for the node
         self.diagnostics.report("state", True, "unconfigured")
 
     @property

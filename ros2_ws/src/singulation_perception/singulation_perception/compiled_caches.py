@@ -29,8 +29,3 @@ def drop_stale_caches(sources: Path, caches: Path) -> int:
         except OSError:  # another process was faster, or the folder is read-only
             continue
     return removed
-
-
-def are_empty(caches: Path) -> bool:
-    """Whether no compiled function is kept in a folder."""
-    return next(caches.glob("*.nbi"), None) is None

@@ -10,17 +10,19 @@ from typing import Any
 
 from numba import njit
 
+from singulation_core.jit import kept
+
 _USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function that Python calls; kept on disk."""
-    return njit(**_USUAL, cache=True)(function)
+    return kept(njit(**_USUAL)(function))
 
 
 def compiled_sums(function: Callable[..., Any]) -> Any:
     """As ``compiled``, where sums may be added up in any order: that makes vector instructions of them."""
-    return njit(**_USUAL, cache=True, fastmath={"reassoc", "contract"})(function)
+    return kept(njit(**_USUAL, fastmath={"reassoc", "contract"})(function))
 
 
 def compiled_part(function: Callable[..., Any]) -> Any:

@@ -26,6 +26,7 @@ from singulation_node.guard import guarded
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import SENSOR_IN, STATE
+from singulation_node.warming import warm
 from singulation_perception import Segmentation, TablePlane, segment_cloud, warm_up
 from singulation_perception.arrangement_markers import arrangement_markers
 from singulation_perception.camera_pose import CameraPose
@@ -36,7 +37,6 @@ from singulation_perception.latest_worker import LatestWorker
 from singulation_perception.perception_diagnostics import first_words, report_clouds, report_table
 from singulation_perception.perception_settings import PerceptionSettings
 from singulation_perception.stamp_order import StampOrder
-from singulation_perception.warming import must_compile
 
 _REPORT_PERIOD = 1.0  # s
 _STOP_TIMEOUT = 10.0  # s; the largest accepted cloud takes far less
@@ -66,11 +66,7 @@ class PerceptionNode(ManagedNode[PerceptionSettings]):
     def configure(self) -> None:
         """Compile the library, listen to TF if needed, announce the results."""
         self._camera.prepare(self.settings.camera_pose_source)
-        if must_compile():
-            self.get_logger().info("compiling, since nothing compiled is kept yet; this takes up to a minute, once")
-        started = time.monotonic()
-        warm_up()
-        self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")
+        warm(self, warm_up, "up to a minute", "singulation_perception.warming")
         self._objects = self.create_publisher(Arrangement, "objects", STATE)
         self._markers = self.create_publisher(MarkerArray, "perception/markers", STATE)
         self._labels = self.create_publisher(PointCloud2, "perception/labels", 1)

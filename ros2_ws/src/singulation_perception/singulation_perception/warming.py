@@ -1,15 +1,19 @@
 """Compiling everything before the first cloud arrives."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.compiled_caches import are_empty
+from singulation_core.polygon import FloatArray
+from singulation_perception.face_image import FaceImage
+from singulation_perception.outlines import outlines_of
+from singulation_perception.rings import Scale
 from singulation_perception.segmentation import segment_cloud
-from singulation_perception.surfaces import connected_runs
+from singulation_perception.splitting import split
 
 _PITCH = 0.001
+_SCALE = Scale(_PITCH, 0.5 * _PITCH, 3.0 * _PITCH)
 
 
 def warm_up() -> None:
@@ -17,14 +21,43 @@ def warm_up() -> None:
 
     With empty caches this compiles for most of a minute; after that it takes about a second.
     """
-    image = _every_kind_of_block()
-    for cloud in (image, image.reshape(-1, 3)):
-        _ = segment_cloud(cloud).labels
+    _see_image()
+    _see_points()
 
 
-def must_compile() -> bool:
-    """Whether the next warm-up compiles, because nothing compiled is kept yet."""
-    return are_empty(Path(connected_runs.stats.cache_path))
+def _see_image() -> None:
+    _ = segment_cloud(_every_kind_of_block()).labels
+
+
+def _see_points() -> None:
+    _ = segment_cloud(_every_kind_of_block().reshape(-1, 3)).labels
+
+
+def _cut() -> None:
+    image = FaceImage(
+        np.zeros(2, dtype=np.int32),
+        np.full((60, 60), -1, dtype=np.int32),
+        np.zeros((1, 3), dtype=np.float32),
+        np.array(((0.0, 1.0 / _PITCH, 0.0), (1.0 / _PITCH, 0.0, 0.0))),
+    )
+    split(_ring_of_an_l(), _SCALE, image, 0.1 * _PITCH)
+
+
+def _outline() -> None:
+    outlines_of([_ring_of_an_l()], np.array([(4.0 * _PITCH, *_SCALE)]))
+
+
+# What helper processes begin with: the parts of the warm-up that take longest to compile and come last.
+STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _see_points)
+
+
+def _ring_of_an_l() -> FloatArray:
+    """(m, 2) rim of an L of two blocks, counter-clockwise [m]."""
+    corners = np.array(((0.0, 0.0), (0.05, 0.0), (0.05, 0.02), (0.02, 0.02), (0.02, 0.05), (0.0, 0.05)))
+    ends = np.roll(corners, -1, axis=0)
+    counts = np.rint(np.abs(ends - corners).sum(axis=1) / _PITCH).astype(int)
+    edges = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, ends, counts, strict=True)]
+    return np.concatenate(edges)
 
 
 def _every_kind_of_block() -> NDArray[np.float32]:

@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from singulation_perception.compiled_caches import are_empty, drop_stale_caches
+from singulation_perception.compiled_caches import drop_stale_caches
 
 
 @pytest.mark.parametrize(
@@ -17,10 +17,3 @@ def test_only_caches_older_than_a_compiled_source_go(tmp_path, text, age, remove
     os.utime(cache, (source.stat().st_mtime + age,) * 2)
     assert drop_stale_caches(tmp_path, tmp_path) == removed
     assert cache.exists() == (removed == 0)
-
-
-def test_caches_are_empty_until_something_compiled_is_kept(tmp_path):
-    assert are_empty(tmp_path / "not there")
-    assert are_empty(tmp_path)
-    (tmp_path / "source.f-1.nbi").write_text("index")
-    assert not are_empty(tmp_path)

@@ -28,6 +28,7 @@ from singulation_node.guard import guarded, guarded_service
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import STATE
+from singulation_node.warming import warm
 from singulation_planner import plan_push, warm_up
 from singulation_planner.planner_markers import planner_markers
 from singulation_planner.planner_settings import PlannerSettings
@@ -46,8 +47,7 @@ class PlannerNode(ManagedNode[PlannerSettings]):
 
     def configure(self) -> None:
         """Load the compiled kernels and announce the results."""
-        self.get_logger().info("warming up; the first time ever this compiles and takes up to 20 s")
-        warm_up()
+        warm(self, warm_up, "up to 20 s")
         self._pushes = self.create_publisher(messages.PushTrajectory, "push", STATE)
         self._markers = self.create_publisher(MarkerArray, "planner/markers", STATE)
 

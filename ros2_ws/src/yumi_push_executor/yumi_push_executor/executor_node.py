@@ -9,12 +9,10 @@ Every goal is accepted and gets a result with a code; one that comes while anoth
 A goal whose client is gone is finished all the same. Nothing that was stopped goes on by itself.
 """
 
-import gc
 import sys
 import threading
 import time
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
@@ -29,6 +27,7 @@ from singulation_node.guard import guarded, guarded_service, report_failure
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
 from singulation_node.qos import LATCHED, STATE
+from singulation_node.warming import warm
 from yumi_push_executor.controllers import Controllers
 from yumi_push_executor.ending import Ending
 from yumi_push_executor.executor_diagnostics import report_executor
@@ -49,17 +48,11 @@ _SEND = 0.2  # s that rclpy may take to send a result after its callback has ret
 
 
 class ExecutorNode(ManagedNode[ExecutorSettings]):
-    """See the module.
+    """See the module."""
 
-    Args:
-        own_process: nothing else lives in this process, so its memory may be tuned for the node.
-        options: of the ROS node.
-    """
-
-    def __init__(self, own_process: bool = False, **options: Any) -> None:
+    def __init__(self, **options: Any) -> None:
         super().__init__("executor_node", ExecutorSettings, **options)
         self.ledger = GoalLedger()
-        self._own_process = own_process
         self._simulated = False
         self._execution: PushExecution | None = None
 
@@ -118,15 +111,8 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
         return float(self.get_clock().now().nanoseconds) * 1e-9
 
     def _warm_planner(self) -> PushPlanner:
-        started = time.monotonic()
-        self.get_logger().info("warming up; the first time ever this compiles and takes some seconds")
         planner = self.make_planner()
-        planner.warm_up()
-        if self._own_process:
-            # What is loaded by now stays: collecting garbage in it would stop all threads for 0.1 s.
-            gc.collect()
-            gc.freeze()
-        self.get_logger().info(f"warm after {time.monotonic() - started:.1f} s")
+        warm(self, planner.warm_up, "some seconds")
         return planner
 
     def _open_action(self, result_timeout: float) -> None:
@@ -243,7 +229,7 @@ def _close(goal: Any, code: ResultCode) -> None:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node."""
-    return run_node(partial(ExecutorNode, own_process=True), args, threads=6)
+    return run_node(ExecutorNode, args, threads=6)
 
 
 if __name__ == "__main__":
