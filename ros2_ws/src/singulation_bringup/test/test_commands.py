@@ -175,6 +175,7 @@ def test_an_error_of_any_part_is_a_problem_and_a_warning_is_not():
     overview = good_overview(10.0)
     overview.hear("camera: frames", Component(1, "slow", {}, 10.0))
     assert overview.problems(10.0, 3.0) == []
+    assert "could push now, with 1 warning (" in screen(overview, 10.0, 3.0, "title")
     overview.hear("camera: lens", Component(DiagnosticStatus.ERROR[0], "dark\nvery", {"lux": "0"}, 10.0))
     text = screen(overview, 10.0, 3.0, "title")
     assert "ERROR  lens: dark very" in text

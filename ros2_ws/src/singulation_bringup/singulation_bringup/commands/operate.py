@@ -20,6 +20,7 @@ from singulation_bringup.commands.command_node import CommandNode
 from singulation_bringup.commands.status import outcome_text
 from singulation_core import ResultCode, SingulationError, contact_mode, conversions
 from singulation_node.main import plain_arguments
+from singulation_planner import POLICIES
 
 _SERVICES = ("halt", "trigger_frame", "reset")
 _PER_PUSH = 120.0  # s, longest wait for the next push; the coordinator has its own, shorter ones
@@ -98,7 +99,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     goal = what.add_parser("singulate", help="separate the blocks")
     goal.add_argument("--max-pushes", type=int, default=30, help="at most (default 30)")
     goal.add_argument("--min-gap", type=float, default=0.0, help="[m] between any two blocks (default: the node's)")
-    goal.add_argument("--policy", default="", help="default: the node's")
+    goal.add_argument("--policy", choices=sorted(POLICIES), default="", metavar="NAME", help="default: the node's")
     goal.add_argument("--contact-mode", default="single_point", help="single_point, edge or two_point")
     for name in _SERVICES:
         what.add_parser(name, help=f"the service {name}")

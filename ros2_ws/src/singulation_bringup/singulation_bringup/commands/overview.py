@@ -96,9 +96,17 @@ def screen(overview: Overview, now: float, window: float, title: str, everything
     lines += ["", _row("TOPIC", "RATE", "LAST")]
     lines += [_topic_line(name, traffic, now, window) for name, traffic in overview.topics.items()]
     problems = overview.problems(now, window)
-    lines += ["", "everything is well" if not problems else f"{len(problems)} to look at:"]
+    lines += ["", _verdict(overview) if not problems else f"{len(problems)} to look at:"]
     lines += [_cut(f"  - {one}") for one in problems[:8]]
     return "\n".join(lines)
+
+
+def _verdict(overview: Overview) -> str:
+    """Of a cell that could push now."""
+    warnings = sum(one.level == 1 for parts in overview.components.values() for one in parts.values())
+    if not warnings:
+        return "everything is well"
+    return f"the cell could push now, with {warnings} warning{'s' if warnings > 1 else ''} (--all shows every part)"
 
 
 def _node_lines(overview: Overview, node: str, now: float, window: float, everything: bool) -> list[str]:

@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from singulation_core import ContactMode, InvalidInputError
+from singulation_planner import POLICIES
 
 PARTS = ("all", "replay", "cell")
 
@@ -89,6 +90,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--contact-mode", choices=modes, default=modes[0], help="how to push (default: %(default)s)")
     parser.add_argument(
         "--policy",
+        choices=sorted(POLICIES),
+        metavar="NAME",
         default="cluster_push",
         help="push policy; rollout_push needs fewer pushes (default: %(default)s, the paper's)",
     )
