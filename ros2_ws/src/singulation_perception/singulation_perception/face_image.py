@@ -73,10 +73,8 @@ def _fitted_map(ring: FloatArray, pixels: IntArray, corner: IntArray) -> FloatAr
 
 
 def to_table(image: FaceImage) -> FloatArray:
-    """(2, 3) affine map from row, column, 1 back to x and y.
-
-    Raises:
-        numpy.linalg.LinAlgError: the rim lies on one line.
-    """
-    inverse = np.linalg.inv(image.to_pixel[:, :2])
-    return np.column_stack((inverse, -inverse @ image.to_pixel[:, 2]))
+    """(2, 3) affine map from row, column, 1 back to x and y; without meaning if the rim lies on one line."""
+    (a, b, row), (c, d, column) = image.to_pixel.tolist()
+    determinant = a * d - b * c or np.inf  # by hand: LAPACK's set-up takes longer than all the rest
+    inverse = np.array(((d, -b), (-c, a))) / determinant
+    return np.column_stack((inverse, -inverse @ (row, column)))
