@@ -52,7 +52,7 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
     row_step = max(1, int(np.sqrt(height * width / _POINTS))) if height > 1 else 1
     column_step = max(1, int(height * width / row_step / _POINTS))
     limits = np.array(workspace or _EVERYWHERE)
-    located, spans, valid, inside, everywhere = _pick(cloud, row_step, column_step, np.array(frame[:3]), limits)
+    located, spans, box, valid, inside, everywhere = _pick(cloud, row_step, column_step, np.array(frame[:3]), limits)
     looked_at = -(-height // row_step) * -(-width // column_step)
     if valid < min(_FEWEST, looked_at):
         raise SingulationError(
@@ -67,15 +67,12 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
             f"mean distance {distance:.0f}: the cloud looks like millimetres; clouds are in metres, divide by 1000",
         )
     columns = _columns(spans, row_step, 3 * column_step, height, width)
-    return CloudSample(located, columns, distance, _pitch(located, row_step * column_step))
+    return CloudSample(located, columns, distance, _pitch(box, len(located) * row_step * column_step))
 
 
-def _pitch(located: FloatArray, every: int) -> float:
-    """Of points ``every``-th of which are given: the room they take is more than what they cover."""
-    if not len(located):
-        return 0.0
-    (x_min, y_min), (x_max, y_max) = located[:, :2].min(axis=0), located[:, :2].max(axis=0)
-    return math.sqrt((x_max - x_min) * (y_max - y_min) / (len(located) * every))
+def _pitch(box: FloatArray, points: int) -> float:
+    """Of points of a cloud that lie within limits in x and y: the room they take is more than what they cover."""
+    return math.sqrt((box[1] - box[0]) * (box[3] - box[2]) / points) if points else 0.0
 
 
 def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: int) -> IntArray:
@@ -91,14 +88,15 @@ def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: in
 @compiled
 def _pick(
     cloud: Raster, row_step: int, column_step: int, frame: FloatArray, limits: FloatArray
-) -> tuple[FloatArray, IntArray, int, float, float]:
-    """Points inside the limits; first column and column after the last of them in each sampled row; how many points
-    are valid anywhere; the sums of the distances of both to the camera.
+) -> tuple[FloatArray, IntArray, FloatArray, int, float, float]:
+    """Points inside the limits; first column and column after the last of them in each sampled row; their least and
+    greatest x and y; how many points are valid anywhere; the sums of the distances of both to the camera.
     """
     numbers = cloud.numbers
     located = np.empty(((cloud.height // row_step + 1) * (cloud.width // column_step + 1), 3))
     spans = np.empty((-(-cloud.height // row_step), 2), dtype=np.int32)
     count, valid, inside, everywhere = 0, 0, 0.0, 0.0
+    x_min, x_max, y_min, y_max = np.inf, -np.inf, np.inf, -np.inf
     for row in range(0, cloud.height, row_step):
         left, right = cloud.width, 0
         for column in range(0, cloud.width, column_step):
@@ -114,8 +112,9 @@ def _pick(
             if limits[0] <= x <= limits[1] and limits[2] <= y <= limits[3]:
                 located[count, 0], located[count, 1] = x, y
                 located[count, 2] = a * frame[2, 0] + b * frame[2, 1] + c * frame[2, 2] + frame[2, 3]
+                x_min, x_max, y_min, y_max = min(x_min, x), max(x_max, x), min(y_min, y), max(y_max, y)
                 count += 1
                 inside += distance
                 left, right = min(left, column), column + 1
         spans[row // row_step, 0], spans[row // row_step, 1] = left, right
-    return located[:count], spans, valid, inside, everywhere
+    return located[:count], spans, np.array((x_min, x_max, y_min, y_max)), valid, inside, everywhere
