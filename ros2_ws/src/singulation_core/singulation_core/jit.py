@@ -10,7 +10,7 @@ from singulation_core.claimed_cache import ClaimedCache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 def compiled(function: Function) -> Function:
@@ -41,21 +41,20 @@ def compiled_inline(function: Function) -> Function:
 
 def compiled_maker(function: Function) -> Function:
     """As ``compiled``, for a function that makes arrays: it counts references."""
-    done: Function = njit(**_USUAL)(function)
+    done: Function = njit(**USUAL)(function)
     return kept(done)
 
 
 def kept(function: Function) -> Function:
     """Keep on disk what is compiled of a function, in a cache that processes share."""
-    dispatcher: Any = function
-    if isinstance(dispatcher, Dispatcher):  # a plain function where Numba is switched off
-        dispatcher._cache = ClaimedCache(dispatcher.py_func)
+    if isinstance(function, Dispatcher):  # a plain function where Numba is switched off
+        function._cache = ClaimedCache(function.py_func)  # type: ignore[attr-defined]  # where enable_caching puts it
     return function
 
 
 def _compiled(function: Function, **options: bool) -> Function:
     try:
-        done: Function = njit(**_USUAL, **options, _nrt=False)(function)
+        done: Function = njit(**USUAL, **options, _nrt=False)(function)
     except (KeyError, TypeError):
-        done = njit(**_USUAL, **options)(function)
+        done = njit(**USUAL, **options)(function)
     return done

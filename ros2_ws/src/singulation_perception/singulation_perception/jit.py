@@ -10,24 +10,22 @@ from typing import Any
 
 from numba import njit
 
-from singulation_core.jit import kept
-
-_USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+from singulation_core.jit import USUAL, kept
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function that Python calls; kept on disk."""
-    return kept(njit(**_USUAL)(function))
+    return kept(njit(**USUAL)(function))
 
 
 def compiled_sums(function: Callable[..., Any]) -> Any:
     """As ``compiled``, where sums may be added up in any order: that makes vector instructions of them."""
-    return kept(njit(**_USUAL, fastmath={"reassoc", "contract"})(function))
+    return kept(njit(**USUAL, fastmath={"reassoc", "contract"})(function))
 
 
 def compiled_part(function: Callable[..., Any]) -> Any:
     """Compile a function that only compiled functions call; kept on disk as part of them."""
-    return njit(**_USUAL, no_cpython_wrapper=True)(function)
+    return njit(**USUAL, no_cpython_wrapper=True)(function)
 
 
 def compiled_plain(function: Callable[..., Any]) -> Any:
@@ -37,6 +35,6 @@ def compiled_plain(function: Callable[..., Any]) -> Any:
     compiles the same, only slower.
     """
     try:
-        return njit(**_USUAL, no_cpython_wrapper=True, _nrt=False)(function)
+        return njit(**USUAL, no_cpython_wrapper=True, _nrt=False)(function)
     except (KeyError, TypeError):
         return compiled_part(function)

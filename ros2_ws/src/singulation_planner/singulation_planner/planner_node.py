@@ -47,7 +47,7 @@ class PlannerNode(ManagedNode[PlannerSettings]):
 
     def configure(self) -> None:
         """Load the compiled kernels and announce the results."""
-        warm(self, warm_up, "up to 20 s")
+        warm(self, warm_up, "up to half a minute", "singulation_planner.warming")
         self._pushes = self.create_publisher(messages.PushTrajectory, "push", STATE)
         self._markers = self.create_publisher(MarkerArray, "planner/markers", STATE)
 
