@@ -1,5 +1,6 @@
 """How long perception_node takes from the start of its process until it takes clouds: cold and warm."""
 
+import gc
 import os
 import signal
 import subprocess
@@ -16,6 +17,7 @@ from rclpy.context import Context
 from sensor_msgs.msg import PointCloud2
 
 from singulation_node.domain import reserved_domain
+from singulation_node.large_messages import prepare_for_large_messages
 
 _LIMIT = 300.0  # s for a start
 _STOP_LIMIT = 30.0  # s
@@ -39,10 +41,12 @@ def run_startup(repeats: int) -> list[Table]:
         ["start", "seconds until it takes clouds", "processor s", "it said"],
         notes=[
             "From the start of the process until another process sees its subscription; warm: median of "
-            f"{repeats} starts. Everything is in it: Python, imports, middleware, discovery, warm-up. The processor "
-            "time ends with the process, a moment later."
+            f"{repeats} starts. Everything is in it: Python, imports, middleware, discovery, warm-up. The other "
+            "process uses our transport profile, as a camera driver should. The processor time is that of all processes "
+            "of the start, and ends with them a moment later."
         ],
     )
+    prepare_for_large_messages()
     with tempfile.TemporaryDirectory() as folder:
         cold = _start(Path(folder))
         warm = [_start(Path(folder)) for _ in range(repeats)]
@@ -73,6 +77,7 @@ def _start(cache: Path) -> Start:
             process.wait(timeout=_STOP_LIMIT)
             camera.destroy_node()
             context.try_shutdown()
+            gc.collect()  # until then the camera keeps its place in the domain
 
 
 def _ended(process: "subprocess.Popen[str]", wall: float) -> Start:
