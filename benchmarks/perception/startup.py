@@ -42,8 +42,8 @@ def run_startup(repeats: int) -> list[Table]:
         notes=[
             "From the start of the process until another process sees its subscription; warm: median of "
             f"{repeats} starts. Everything is in it: Python, imports, middleware, discovery, warm-up. The other "
-            "process uses our transport profile, as a camera driver should. The processor time is that of all processes "
-            "of the start, and ends with them a moment later."
+            "process uses our transport profile, as a camera driver should. The processor time is that of all "
+            "processes of the start, and ends with them a moment later."
         ],
     )
     prepare_for_large_messages()
