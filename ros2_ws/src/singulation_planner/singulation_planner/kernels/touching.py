@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from singulation_core.gyration import squared_gyration
 from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
@@ -25,20 +26,6 @@ def _side(
     return low, high, height
 
 
-@compiled_part
-def _squared_gyration(vertices: FloatArray, first: int, last: int, x: float, y: float) -> float:
-    """Moment of inertia over mass about (x, y) [m^2]."""
-    area, moment = 0.0, 0.0
-    for k in range(first, last):
-        after = k + 1 if k + 1 < last else first
-        ax, ay = vertices[k, 0] - x, vertices[k, 1] - y
-        bx, by = vertices[after, 0] - x, vertices[after, 1] - y
-        weight = ax * by - bx * ay
-        area += weight
-        moment += weight * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by)
-    return moment / (6.0 * area)
-
-
 @compiled_maker
 def touching(
     centroids: FloatArray, vertices: FloatArray, firsts: IntArray, edges: IntArray, scale: float
@@ -56,7 +43,7 @@ def touching(
     n = len(centroids)
     planes, arms, gyrations = np.zeros((n, n, 3)), np.zeros((n, n, 2)), np.empty(n)
     for i in range(n):
-        gyrations[i] = _squared_gyration(vertices, firsts[i], firsts[i + 1], centroids[i, 0], centroids[i, 1])
+        gyrations[i] = squared_gyration(vertices, firsts[i], firsts[i + 1], centroids[i, 0], centroids[i, 1])
         for j in range(i):
             k = edges[i, j]
             own = firsts[i] <= k < firsts[i + 1]

@@ -3,13 +3,15 @@
 import copy
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
 from singulation_core.arrangement import Arrangement
 from singulation_core.errors import InvalidInputError
 from singulation_core.polygon import FloatArray
-from singulation_core.push_world.compiled.rollout import DONE, measure_overlaps, part_overlaps, roll_out_many
+from singulation_core.push_world.compiled.outlines import measure
+from singulation_core.push_world.compiled.rollout import measure_overlaps, part_overlaps, roll_out_many
 from singulation_core.push_world.compiled.types import Contacts, IntArray, Numbers, Scratch, Shapes, State
 from singulation_core.push_world.footprint import Footprint
 from singulation_core.push_world.overlap import refuse_deep_overlap
@@ -17,6 +19,7 @@ from singulation_core.push_world.physics import HEALED, TOUCHING, PushPhysics
 
 _SWEEPS = 20  # over all pairs, in which overlaps of a varied world are undone
 _RETREAT = 1.0  # inner units
+_NONE = np.empty((0, 2))
 
 
 class CompiledWorld:
@@ -108,10 +111,7 @@ class CompiledWorld:
         Returns:
             (m, n, 3) x, y [m] of the centroids and turn [rad], NaN where not done; (m,) DONE, BLOCKED or DIVERGED.
         """
-        ways = (ends - starts) / self._unit
-        heading, length = np.arctan2(ways[:, 1], ways[:, 0]), np.hypot(ways[:, 0], ways[:, 1])
-        pushes = np.column_stack((starts / self._unit, heading, length))
-        poses, codes = np.empty((len(pushes), len(self._origins), 3)), np.empty(len(pushes), dtype=np.int64)
+        poses, codes = np.empty((len(starts), len(self._origins), 3)), np.empty(len(starts), dtype=np.int64)
         roll_out_many(
             self._shapes,
             self._state,
@@ -119,12 +119,12 @@ class CompiledWorld:
             self._scratch,
             self._numbers,
             self._origins,
-            pushes,
+            self._unit,
+            starts,
+            ends,
             poses,
             codes,
         )
-        poses[..., :2] *= self._unit
-        poses[codes != DONE] = np.nan
         return poses, codes
 
 
@@ -136,35 +136,24 @@ def _step(arrangement: Arrangement, footprint: Footprint, physics: PushPhysics, 
 
 def _shapes(arrangement: Arrangement, footprint: Footprint, densities: Sequence[float], unit: float) -> Shapes:
     """All outlines at once: a planner makes a world for each plan."""
-    outlines = [item.outline for item in arrangement.objects]
-    count = len(outlines)
-    firsts = np.zeros(count + 2, dtype=np.int64)
-    sizes = [len(one) for one in outlines]
-    np.cumsum([*sizes, sum(len(one) for one in footprint.polygons)], out=firsts[1:])
-    shift = np.zeros((int(firsts[-1]), 2))
-    shift[: firsts[count]] = np.repeat(arrangement.centroids, sizes, axis=0)
-    vertices = (np.concatenate([*outlines, *footprint.polygons, np.empty((0, 2))]) - shift) / unit
-    following = np.arange(1, len(vertices) + 1)
-    following[firsts[1:][np.diff(firsts) > 0] - 1] = firsts[:-1][np.diff(firsts) > 0]
-    edges = vertices[following] - vertices
-    normals = np.column_stack((edges[:, 1], -edges[:, 0])) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
-    mobility, inner_radii = np.zeros((count + 1, 2)), np.zeros(count + 1)
-    if count:
-        starts, blocks = firsts[:count], slice(0, firsts[count])
-        masses = np.array([item.area for item in arrangement.objects]) / unit**2 * np.array(densities)
-        gyration = _squared_gyration(vertices[blocks], vertices[following][blocks], starts)
-        mobility[:-1, 0], mobility[:-1, 1] = 1.0 / masses, 1.0 / (masses * gyration)
-        inner_radii[:-1] = np.minimum.reduceat((vertices * normals).sum(axis=1)[blocks], starts)
-    radii = np.append(arrangement.bounding_radii, footprint.reach) / unit
-    discs = np.array([(one.x, one.y, one.radius) for one in footprint.discs]).reshape(-1, 3) / unit
-    return Shapes(firsts, vertices, normals, radii, inner_radii, mobility, discs)
-
-
-def _squared_gyration(vertices: FloatArray, following: FloatArray, starts: IntArray) -> FloatArray:
-    """Moment of inertia over mass of polygons about the origin, from their edges (v, 2) to (v, 2)."""
-    weights = vertices[:, 0] * following[:, 1] - vertices[:, 1] * following[:, 0]
-    squares = (vertices**2 + vertices * following + following**2).sum(axis=1)
-    return np.asarray(np.add.reduceat(weights * squares, starts) / (6.0 * np.add.reduceat(weights, starts)))
+    outlines = [*(item.outline for item in arrangement.objects), *footprint.polygons]
+    count = len(arrangement)
+    firsts = np.array((0, *accumulate(map(len, outlines))), dtype=np.int64)
+    if not footprint.polygons:
+        firsts = np.append(firsts, firsts[-1:])
+    vertices = int(firsts[-1])
+    shapes = Shapes(
+        firsts,
+        np.empty((vertices, 2)),
+        np.empty((vertices, 2)),
+        np.append(arrangement.bounding_radii, footprint.reach) / unit,
+        np.empty(count + 1),
+        np.empty((count + 1, 2)),
+        np.array([(one.x, one.y, one.radius) for one in footprint.discs]).reshape(-1, 3) / unit,
+    )
+    masses = np.array([item.area for item in arrangement.objects]) / unit**2 * np.array(densities)
+    measure(np.concatenate([*outlines, _NONE]), arrangement.centroids, masses, unit, shapes)
+    return shapes
 
 
 def _state(shapes: Shapes) -> State:

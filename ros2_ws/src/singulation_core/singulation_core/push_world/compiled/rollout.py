@@ -21,7 +21,9 @@ def roll_out_many(
     scratch: Scratch,
     numbers: Numbers,
     origins: FloatArray,
-    pushes: FloatArray,
+    unit: float,
+    starts: FloatArray,
+    ends: FloatArray,
     poses: FloatArray,
     codes: IntArray,
 ) -> None:
@@ -29,20 +31,25 @@ def roll_out_many(
 
     Args:
         shapes, state, contacts, scratch, numbers: see their classes.
-        origins: (n, 3) first poses of the blocks.
-        pushes: (m, 4) start x, y, heading, length.
-        poses: (m, n, 3) written: x, y, turn.
+        origins: (n, 3) first poses of the blocks, in inner units.
+        unit: length of an inner unit [m].
+        starts, ends: (m, 2) of the pusher [m].
+        poses: (m, n, 3) written: x, y [m], turn [rad]; NaN where not done.
         codes: (m,) written: ``DONE``, ``BLOCKED`` or ``DIVERGED``.
     """
-    for k in range(len(pushes)):
-        x, y, heading = pushes[k, 0], pushes[k, 1], pushes[k, 2]
+    for k in range(len(starts)):
+        x, y = starts[k, 0] / unit, starts[k, 1] / unit
+        wx, wy = (ends[k, 0] - starts[k, 0]) / unit, (ends[k, 1] - starts[k, 1]) / unit
+        heading = np.arctan2(wy, wx)
         _begin(shapes, state, origins, x, y, heading)
-        codes[k] = _roll_out(shapes, state, contacts, scratch, numbers, pushes[k, 3])
+        codes[k] = _roll_out(shapes, state, contacts, scratch, numbers, np.hypot(wx, wy))
         c, s = np.cos(heading), np.sin(heading)
         for body in range(len(origins)):
-            px, py = state.poses[body, 0], state.poses[body, 1]
-            poses[k, body, 0], poses[k, body, 1] = x + c * px - s * py, y + s * px + c * py
-            poses[k, body, 2] = state.poses[body, 2] + heading
+            px, py, turn = state.poses[body, 0], state.poses[body, 1], state.poses[body, 2]
+            if codes[k] != DONE:
+                px, py, turn = np.nan, np.nan, np.nan
+            poses[k, body, 0], poses[k, body, 1] = (x + c * px - s * py) * unit, (y + s * px + c * py) * unit
+            poses[k, body, 2] = turn + heading
 
 
 @compiled
