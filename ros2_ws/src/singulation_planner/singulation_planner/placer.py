@@ -112,8 +112,8 @@ class Placer:
         return f"of {sum(self.rejected.values())} candidate pushes " + ", ".join(parts)
 
     def _count(self, refused: IntArray) -> None:
-        for code in refused.tolist():
-            self.rejected[code] += 1
+        for code, count in enumerate(np.bincount(refused).tolist()):
+            self.rejected[code] += count
 
     def _blank(self, count: int) -> tuple[FloatArray, IntArray]:
         status = np.empty(count, dtype=np.int64)

@@ -2,37 +2,45 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled, compiled_part
+from singulation_core.jit import compiled_inline, compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
 
 @compiled_part
+def _sides(centroids: FloatArray, vertices: FloatArray, firsts: IntArray, sides: FloatArray) -> None:
+    """Write vertex x, y around the centroid [m], outward normal and length [m] of the edges that begin there (v, 5)."""
+    for i in range(len(centroids)):
+        first, last = firsts[i], firsts[i + 1]
+        for k in range(first, last):
+            after = k + 1 if k + 1 < last else first
+            ex, ey = vertices[after, 0] - vertices[k, 0], vertices[after, 1] - vertices[k, 1]
+            size = np.sqrt(ex * ex + ey * ey)
+            sides[k, 0], sides[k, 1] = vertices[k, 0] - centroids[i, 0], vertices[k, 1] - centroids[i, 1]
+            sides[k, 2], sides[k, 3], sides[k, 4] = ey / size, -ex / size, size
+
+
+@compiled_inline
 def _nearest(
-    vertices: FloatArray, first: int, last: int, x: float, y: float, tip_x: float, tip_y: float
+    sides: FloatArray, first: int, last: int, tip_x: float, tip_y: float
 ) -> tuple[float, float, float, float, float]:
-    """Nearest point of an outline to the tip, relative to (x, y), the normal there, and the distance (inside: < 0)."""
-    height, edge, length = -np.inf, first, 1.0
+    """Nearest point of an outline to the tip, the normal there, and the distance (inside: < 0)."""
+    height, edge = -np.inf, first
     for k in range(first, last):
-        after = k + 1 if k + 1 < last else first
-        ex, ey = vertices[after, 0] - vertices[k, 0], vertices[after, 1] - vertices[k, 1]
-        size = np.sqrt(ex * ex + ey * ey)
-        above = ((tip_x + x - vertices[k, 0]) * ey - (tip_y + y - vertices[k, 1]) * ex) / size
+        above = (tip_x - sides[k, 0]) * sides[k, 2] + (tip_y - sides[k, 1]) * sides[k, 3]
         if above > height:
-            height, edge, length = above, k, size
-    after = edge + 1 if edge + 1 < last else first
-    vx, vy = vertices[edge, 0] - x, vertices[edge, 1] - y
-    ex, ey = vertices[after, 0] - vertices[edge, 0], vertices[after, 1] - vertices[edge, 1]
-    share = min(1.0, max(0.0, ((tip_x - vx) * ex + (tip_y - vy) * ey) / (length * length)))
-    px, py = vx + share * ex, vy + share * ey
-    nx, ny = tip_x - px, tip_y - py
-    distance = np.sqrt(nx * nx + ny * ny)
+            height, edge = above, k
+    vx, vy, nx, ny, length = sides[edge, 0], sides[edge, 1], sides[edge, 2], sides[edge, 3], sides[edge, 4]
+    along = min(length, max(0.0, (tip_y - vy) * nx - (tip_x - vx) * ny))
+    px, py = vx - along * ny, vy + along * nx
+    dx, dy = tip_x - px, tip_y - py
+    distance = np.sqrt(dx * dx + dy * dy)
     if height <= 0.0 or distance < 1e-9 * length:
-        return px, py, ey / length, -ex / length, height
-    return px, py, nx / distance, ny / distance, distance
+        return px, py, nx, ny, height
+    return px, py, dx / distance, dy / distance, distance
 
 
-@compiled_part
+@compiled_inline
 def _force(
     nx: float, ny: float, rx: float, ry: float, dx: float, dy: float, gyration: float, friction: float
 ) -> tuple[float, float, float]:
@@ -48,7 +56,7 @@ def _force(
     return fx, fy, (rx * fy - ry * fx) / gyration
 
 
-@compiled
+@compiled_maker
 def paths_alone(
     centroids: FloatArray,
     vertices: FloatArray,
@@ -71,15 +79,16 @@ def paths_alone(
         tip, travel, friction: radius [m], way [m] and friction of the tip.
         paths: (m, k, 2), written: displacement of the centroid [m] after each kth of the way.
     """
-    steps = paths.shape[1]
+    steps, sides = paths.shape[1], np.empty((len(vertices), 5))
+    _sides(centroids, vertices, firsts, sides)
     for c in range(len(targets)):
         i, dx, dy, advance = targets[c], directions[c, 0], directions[c, 1], travel / steps
-        cx, cy = centroids[i, 0], centroids[i, 1]
-        tip_x, tip_y, x, y, turn = starts[c, 0] - cx, starts[c, 1] - cy, 0.0, 0.0, 0.0
+        tip_x, tip_y = starts[c, 0] - centroids[i, 0], starts[c, 1] - centroids[i, 1]
+        x, y, turn = 0.0, 0.0, 0.0
         for step in range(steps):
             c_, s_ = np.cos(turn), np.sin(turn)
             ux, uy = c_ * (tip_x - x) + s_ * (tip_y - y), c_ * (tip_y - y) - s_ * (tip_x - x)
-            px, py, qx, qy, distance = _nearest(vertices, firsts[i], firsts[i + 1], cx, cy, ux, uy)
+            px, py, qx, qy, distance = _nearest(sides, firsts[i], firsts[i + 1], ux, uy)
             nx, ny, rx, ry = c_ * qx - s_ * qy, s_ * qx + c_ * qy, c_ * px - s_ * py, s_ * px + c_ * py
             need = -advance * (nx * dx + ny * dy) - (distance - tip)
             tip_x, tip_y = tip_x + advance * dx, tip_y + advance * dy

@@ -47,6 +47,18 @@ def fan(first: FloatArray, count: int) -> FloatArray:
 
 
 @compiled_maker
+def fans(centroids: FloatArray, count: int, scale: float) -> FloatArray:
+    """(n count, 2) the fans of all objects, each with its first direction away from the others."""
+    n = len(centroids)
+    directions = np.empty((n * count, 2))
+    for i in range(n):
+        one = fan(away(centroids, i, scale), count)
+        for k in range(count):
+            directions[i * count + k, 0], directions[i * count + k, 1] = one[k, 0], one[k, 1]
+    return directions
+
+
+@compiled_maker
 def ascending(scores: FloatArray, scale: float) -> IntArray:
     """Order of a few dozen scores, smallest first; those that differ by less than rounding errors keep their order."""
     n = len(scores)

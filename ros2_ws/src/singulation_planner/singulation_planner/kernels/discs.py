@@ -8,9 +8,9 @@ turns as the force beside its centroid makes it turn, but its outline does not.
 
 import numpy as np
 
-from singulation_core.jit import compiled_maker, compiled_part
+from singulation_core.jit import compiled_inline, compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
-from singulation_planner.kernels.log_change import log_change
+from singulation_planner.kernels.log_change import inverse_squares, log_change
 from singulation_planner.kernels.types import IntArray
 
 # The first block slides off those it meets, and is held up by them: shares of what it would push them aside and ahead.
@@ -21,7 +21,7 @@ _LEAST = 1e-3  # of the way that a contact gives way; without a bound a block be
 _FLOOR = 0.05  # smallest distance that counts, in units of the scale, as in the singulation distance
 
 
-@compiled_part
+@compiled_inline
 def _in_the_way(
     points: FloatArray, i: int, j: int, contact: FloatArray, planes: FloatArray
 ) -> tuple[float, float, float, bool]:
@@ -46,7 +46,7 @@ def _in_the_way(
     return contact[i, j] - apart, dx / apart, dy / apart, False
 
 
-@compiled_part
+@compiled_inline
 def _shift(
     mx: float, my: float, nx: float, ny: float, rx: float, ry: float, gyration: float, depth: float
 ) -> tuple[float, float]:
@@ -66,7 +66,7 @@ def _shift(
     return way * fx, way * fy
 
 
-@compiled_part
+@compiled_inline
 def _spread(
     points: FloatArray,
     before: FloatArray,
@@ -117,7 +117,7 @@ def _spread(
                 tail += 1
 
 
-@compiled_part
+@compiled_inline
 def _give_way(
     points: FloatArray,
     contact: FloatArray,
@@ -190,8 +190,9 @@ def disc_scores(
         weights: of the change of the mean log distance and of the mean gap (both without unit).
         scores: (m,), written.
     """
-    n = len(centroids)
-    contact = np.empty((n, n))
+    n, floor = len(centroids), _FLOOR * scale
+    contact, inverse = np.empty((n, n)), np.empty((n, n))
+    inverse_squares(centroids, floor, inverse)
     for i in range(n):
         for j in range(n):
             dx, dy = centroids[j, 0] - centroids[i, 0], centroids[j, 1] - centroids[i, 1]
@@ -211,6 +212,6 @@ def disc_scores(
             after[target, 1] = centroids[target, 1] + paths[c, step, 1] + deflection[1]
             _give_way(after, contact, planes, target, directions[c, 0], directions[c, 1], deflection)
             _spread(after, last, contact, planes, arms, gyrations, target, queue, rank, moved)
-        scores[c] = weights[0] * log_change(centroids, after, moved, counted, _FLOOR * scale)
+        scores[c] = weights[0] * log_change(after, inverse, moved, counted, floor)
         if weights[1] != 0.0:
             scores[c] += weights[1] * _clearance(centroids, after, gaps, moved, width)

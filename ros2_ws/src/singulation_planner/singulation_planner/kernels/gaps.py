@@ -4,7 +4,7 @@ import numpy as np
 
 from singulation_core.jit import compiled_maker, compiled_part
 from singulation_core.polygon import FloatArray
-from singulation_planner.kernels.log_change import log_change
+from singulation_planner.kernels.log_change import inverse_squares, log_change
 from singulation_planner.kernels.types import IntArray
 
 _FREED = 0.1  # what the last step to a wide enough gap counts for: almost free is not free
@@ -59,8 +59,9 @@ def _put(shapes: FloatArray, first: int, last: int, x: float, y: float, turn: fl
 def all_gaps(corners: FloatArray, firsts: IntArray) -> tuple[FloatArray, IntArray]:
     """(n, n) gaps of all pairs [m], infinite on the diagonal, and the edges (n, n) that separate them most."""
     n = len(firsts) - 1
-    gaps, edges = np.full((n, n), np.inf), np.zeros((n, n), dtype=np.int64)
+    gaps, edges = np.empty((n, n)), np.zeros((n, n), dtype=np.int64)
     for i in range(n):
+        gaps[i, i] = np.inf
         for j in range(i):
             gap, edge = outline_gap(corners, firsts[i], firsts[i + 1], firsts[j], firsts[j + 1])
             gaps[i, j], gaps[j, i], edges[i, j], edges[j, i] = gap, gap, edge, edge
@@ -132,7 +133,8 @@ def outcome_values(
     """
     n = len(radii)
     corners, nearest, moved = np.empty_like(outlines), np.empty(n), np.empty(n)
-    everyone = np.ones(n)
+    everyone, inverse = np.ones(n), np.empty((n, n))
+    inverse_squares(before, floor, inverse)
     for c in range(len(poses)):
         pose = poses[c]
         changes[c], spreads[c], clearances[c] = np.nan, np.nan, 0.0
@@ -142,8 +144,8 @@ def outcome_values(
             way = max(abs(pose[i, 0] - before[i, 0]), abs(pose[i, 1] - before[i, 1]))
             moved[i] = 1.0 if max(way, abs(pose[i, 2] - before[i, 2]) * radii[i]) > 1e-9 * radii[i] else 0.0
             nearest[i] = width
-        changes[c] = log_change(before, pose, moved, everyone, floor)
-        spreads[c] = changes[c] if width == 0.0 else log_change(before, pose, moved, counted, floor)
+        changes[c] = log_change(pose, inverse, moved, everyone, floor)
+        spreads[c] = changes[c] if width == 0.0 else log_change(pose, inverse, moved, counted, floor)
         if width > 0.0:
             for i in range(n):
                 _put(outlines, firsts[i], firsts[i + 1], pose[i, 0], pose[i, 1], pose[i, 2], corners)

@@ -9,27 +9,44 @@ _MINOR = 0.1  # enough to decide where no push changes what counts fully: room i
 
 
 @compiled_part
-def log_change(before: FloatArray, after: FloatArray, moved: FloatArray, counted: FloatArray, floor: float) -> float:
+def inverse_squares(points: FloatArray, floor: float, inverse: FloatArray) -> None:
+    """Write one over the squared distances of all pairs to ``inverse`` (n, n) [1/m^2].
+
+    Args:
+        points: (n, 2 or more) positions [m].
+        floor: smallest distance that counts [m].
+        inverse: its diagonal is not written.
+    """
+    for i in range(len(points)):
+        for j in range(i):
+            dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+            inverse[i, j] = 1.0 / max(dx * dx + dy * dy, floor * floor)
+            inverse[j, i] = inverse[i, j]
+
+
+@compiled_part
+def log_change(after: FloatArray, inverse: FloatArray, moved: FloatArray, counted: FloatArray, floor: float) -> float:
     """Change of the mean log distance of all pairs; those of two blocks that do not count are taken as unchanged, those
     of one that does and one that does not as a tenth.
 
     Args:
-        before, after: (n, 2 or more) positions [m].
+        after: (n, 2 or more) positions [m].
+        inverse: (n, n) ``inverse_squares`` of where they were before.
         moved: (n,) 0 where both are the same.
         counted: (n,) 1 or 0.
         floor: smallest distance that counts [m].
     """
-    n, total = len(before), 0.0
+    n, total = len(after), 0.0
     for i in range(n):
         if moved[i] == 0.0:
             continue
         ratio, minor = 1.0, 1.0
+        x, y = after[i, 0], after[i, 1]
         for j in range(n):
             if j == i or (moved[j] != 0.0 and j < i) or (counted[i] == 0.0 and counted[j] == 0.0):
                 continue
-            dx, dy = after[j, 0] - after[i, 0], after[j, 1] - after[i, 1]
-            ex, ey = before[j, 0] - before[i, 0], before[j, 1] - before[i, 1]
-            share = max(dx * dx + dy * dy, floor * floor) / max(ex * ex + ey * ey, floor * floor)
+            dx, dy = after[j, 0] - x, after[j, 1] - y
+            share = max(dx * dx + dy * dy, floor * floor) * inverse[i, j]
             if counted[i] != 0.0 and counted[j] != 0.0:
                 ratio *= share
             else:

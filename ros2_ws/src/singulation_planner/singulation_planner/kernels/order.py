@@ -17,6 +17,21 @@ def _before(keys: FloatArray, one: int, other: int) -> bool:
     return False
 
 
+@compiled_part
+def _mean(points: FloatArray, axis: int, room: FloatArray) -> float:
+    """Mean of a column: of its sorted numbers, whose sum is the same in whatever order they came."""
+    total = 0.0
+    for k in range(len(points)):
+        m = k
+        while m > 0 and room[m - 1] > points[k, axis]:
+            room[m] = room[m - 1]
+            m -= 1
+        room[m] = points[k, axis]
+    for k in range(len(points)):
+        total += room[k]
+    return total / len(points)
+
+
 @compiled_maker
 def canonical_order(centroids: FloatArray, radii: FloatArray, areas: FloatArray) -> IntArray:
     """(n,) objects by bounding radius, area, distance from the mean of all centroids, x and y, smallest first.
@@ -24,9 +39,10 @@ def canonical_order(centroids: FloatArray, radii: FloatArray, areas: FloatArray)
     Args:
         centroids, radii, areas: (n, 2) [m], (n,) [m], (n,) [m^2], in any order.
     """
-    n, largest = len(radii), radii.max()
-    # The sum of sorted numbers is the same in whatever order they came.
-    mean_x, mean_y = np.sort(centroids[:, 0]).sum() / n, np.sort(centroids[:, 1]).sum() / n
+    n, largest, room = len(radii), 0.0, np.empty(len(radii))
+    for i in range(n):
+        largest = max(largest, radii[i])
+    mean_x, mean_y = _mean(centroids, 0, room), _mean(centroids, 1, room)
     keys = np.empty((n, 5))
     for i in range(n):
         x, y = centroids[i, 0], centroids[i, 1]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from singulation_core.jit import compiled, compiled_part
+from singulation_core.jit import compiled, compiled_inline, compiled_part
 from singulation_core.polygon import FloatArray
 from singulation_planner.kernels.types import IntArray
 
@@ -102,7 +102,7 @@ def _rectangle_apart(
     return u_min >= front or u_max <= -back or w_min >= half or w_max <= -half
 
 
-@compiled_part
+@compiled_inline
 def _start(
     mode: int,
     from_circle: bool,
@@ -134,7 +134,7 @@ def _start(
     return min(contact, -np.sqrt(max(0.0, whole * whole - offset * offset)))
 
 
-@compiled_part
+@compiled_inline
 def _fits(
     mode: int,
     shapes: Shapes,
@@ -163,6 +163,8 @@ def _fits(
             for side in (-jaw, jaw):
                 if _gap(vertices, first, last, px - dy * side, py + dx * side) < tip + slack:
                     return False
+                if jaw == 0.0:
+                    break
     return True
 
 
@@ -190,7 +192,7 @@ def _inside(
     return True
 
 
-@compiled_part
+@compiled_inline
 def _place_one(
     mode: int,
     from_circle: bool,

@@ -57,14 +57,21 @@ class Judge:
         """In the world as it was seen. Pushes whose simulation fails are counted as rejected."""
         return self._simulate(proposals, 0)
 
-    def least(self, proposals: Proposals, first: Outcomes) -> Outcomes:
+    def least(self, proposals: Proposals, first: Outcomes, enough: float) -> Outcomes:
         """Of the outcomes ``first`` of one proposal and those of a second look the one with the least value.
 
         Where they differ much, the push stands on a knife's edge: its block may slip to one side or to the other. A
-        search that simulates many pushes finds such ones, and what it expects of them does not happen.
+        search that simulates many pushes finds such ones, and what it expects of them does not happen. A value that
+        is not above ``enough`` ends the look.
         """
-        looks = [first, *(self._simulate(proposals, 1 + k) for k in range(len(_FRICTIONS)))]
-        return min(looks, key=lambda one: float(np.nan_to_num(one.values[0], nan=-np.inf)))
+        least = first
+        for k in range(len(_FRICTIONS)):
+            look = self._simulate(proposals, 1 + k)
+            if not (look.values[0] >= least.values[0]):
+                least = look
+            if not (least.values[0] > enough):
+                break
+        return least
 
     def in_all_worlds(self, proposals: Proposals) -> Outcomes:
         """Means over the sampled worlds in which the simulation does not fail; the poses are NaN."""
@@ -81,14 +88,12 @@ class Judge:
         return float(self.objective.values(world.poses, world.poses[np.newaxis])[0][0])
 
     def _simulate(self, proposals: Proposals, number: int) -> Outcomes:
-        objects = proposals.candidates.objects
-        ends = proposals.starts + self.placer.travel * proposals.candidates.directions
+        starts, ends = proposals.starts, proposals.starts + self.placer.travel * proposals.candidates.directions
         poses = np.empty((len(proposals), len(self.placer.scene), 3))
-        values, changes = np.empty(len(proposals)), np.empty(len(proposals))
-        for width, target, same in self._by_width(objects):
+        for width, target, same in self._by_width(proposals.candidates.objects):
             world = self._of_width(target, width)[number]
-            poses[same], _ = world.roll_out(proposals.starts[same], ends[same])
-            values[same], changes[same] = self.objective.values(world.poses, poses[same])
+            poses[same], _ = world.roll_out(starts[same], ends[same])
+        values, changes = self.objective.values(world.poses, poses)
         self.placer.rejected[NOT_SIMULATED] += int(np.isnan(values).sum())
         return Outcomes(values, changes, poses)
 

@@ -8,8 +8,9 @@ import numpy as np
 from singulation_core import ContactMode
 from singulation_core.polygon import FloatArray
 from singulation_planner.candidates import Candidates
-from singulation_planner.directions import ascending, away
+from singulation_planner.directions import ascending
 from singulation_planner.kernels.alone import paths_alone
+from singulation_planner.kernels.compass import fans
 from singulation_planner.kernels.types import IntArray
 from singulation_planner.placer import Placer
 from singulation_planner.rollout.objective import Objective
@@ -17,9 +18,9 @@ from singulation_planner.rollout.objective import Objective
 _DIRECTIONS = 16
 # Lines beside the centroid [bounding radii]: for all directions, and for those that look best on these.
 _LINES, _MORE_LINES = np.array((0.0, -0.3, 0.3)), np.array((-0.15, 0.15, -0.45, 0.45, -0.6, 0.6, -0.75, 0.75))
-_PROMISING = 60  # directions, of all objects together, that get more lines
+_PROMISING = 30  # directions, of all objects together, that get more lines
 _LINE_DISTANCE = 0.15  # of two lines of one direction [bounding radii]
-_STEPS, _FRICTION = 4, 0.5  # of the paths that the score assumes
+_STEPS, _FRICTION = 3, 0.5  # of the paths that the score assumes
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,28 +58,24 @@ def feasible(placer: Placer, candidates: Candidates) -> tuple[Proposals, IntArra
 
 def by_score(placer: Placer, objective: Objective) -> Proposals:
     """All feasible pushes of the grid, best score first; where the scores are best, the grid is finer."""
-    count = len(placer.scene)
-    first = np.array([np.arctan2(*away(placer.scene, index)[::-1]) for index in range(count)])
-    angles = (first[:, np.newaxis] + 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS).ravel()
-    objects = np.repeat(np.arange(count), _DIRECTIONS)
-    coarse, rows = feasible(placer, _on_lines(placer, objects, angles, _LINES))
+    scene = placer.scene
+    ways = fans(scene.centroids, _DIRECTIONS, scene.scale)
+    objects = np.repeat(np.arange(len(scene)), _DIRECTIONS)
+    coarse, rows = feasible(placer, _on_lines(placer, objects, ways, _LINES))
     scores = _scores(placer, objective, coarse)
-    finer = np.arange(len(angles))
-    if len(angles) > _PROMISING and len(scores):
-        ranked = rows[ascending(-scores)] // len(_LINES)
-        _, at = np.unique(ranked, return_index=True)
-        finer = ranked[np.sort(at)[:_PROMISING]]
-    fine, _ = feasible(placer, _on_lines(placer, objects[finer], angles[finer], _MORE_LINES))
+    if len(ways) > _PROMISING and len(scores):
+        best_first = dict.fromkeys((rows[ascending(-scores)] // len(_LINES)).tolist())
+        finer = list(best_first)[:_PROMISING]
+        objects, ways = objects[finer], ways[finer]
+    fine, _ = feasible(placer, _on_lines(placer, objects, ways, _MORE_LINES))
     scores = np.concatenate((scores, _scores(placer, objective, fine)))
     return coarse.and_then(fine).part(ascending(-scores))
 
 
-def _on_lines(placer: Placer, objects: IntArray, angles: FloatArray, lines: FloatArray) -> Candidates:
+def _on_lines(placer: Placer, objects: IntArray, ways: FloatArray, lines: FloatArray) -> Candidates:
     """For each object and direction the pushes along all lines."""
-    many = np.repeat(objects, len(lines))
-    turned = np.repeat(angles, len(lines))
-    offsets = placer.scene.radii[many] * np.tile(lines, len(objects))
-    return Candidates(many, np.column_stack((np.cos(turned), np.sin(turned))), offsets)
+    offsets = placer.scene.radii[objects, np.newaxis] * lines
+    return Candidates(objects.repeat(len(lines)), ways.repeat(len(lines), axis=0), offsets.ravel())
 
 
 def _scores(placer: Placer, objective: Objective, proposals: Proposals) -> FloatArray:

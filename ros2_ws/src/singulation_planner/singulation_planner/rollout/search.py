@@ -16,7 +16,6 @@ _SCREENED_FIRST = 64  # where the best of them are judged again: before that
 _BATCH, _BLOCKS = 8, 96  # simulations between two looks at the clock: at least, and times the number of blocks
 _REFINEMENTS = 4  # portions of the variations
 _NARROWER = 0.7  # shrinks the variations from batch to batch
-_LOOKS = 3  # second looks in a batch, at most
 _FINALISTS = 16  # of those screened so far, judged again
 
 
@@ -107,12 +106,13 @@ class Search:
     def _look_again(self, tried: Proposals, outcomes: Outcomes) -> None:
         """Take those for better than the best so far that are so at a second look too, best first."""
         values = _comparable(outcomes.values)
-        for k in np.argsort(-values, kind="stable")[:_LOOKS].tolist():
-            if not np.isfinite(values[k]) or (self.nominal is not None and values[k] <= self.nominal.value):
+        for k in np.argsort(-values, kind="stable").tolist():
+            best = -np.inf if self.nominal is None else self.nominal.value
+            if not values[k] > best:
                 return
             one = slice(k, k + 1)
             first = Outcomes(outcomes.values[one], outcomes.changes[one], outcomes.poses[one])
-            self.nominal = _better(self.nominal, tried.part(one), self.judge.least(tried.part(one), first))
+            self.nominal = _better(self.nominal, tried.part(one), self.judge.least(tried.part(one), first, best))
 
     def _judge(self, tried: Proposals) -> None:
         if self.final is not None:
