@@ -3,7 +3,7 @@
 singulate: separates what lies on the table and shows every push. Ctrl-C stops the robot and ends the goal.
 halt: stops the robot; no emergency stop.
 trigger_frame: takes one cloud.
-reset: puts the blocks of the simulated cell back.
+reset: the simulated cell without faults, motors on.
 Exit code 0: done; 1: not, and why.
 """
 
@@ -55,11 +55,11 @@ def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
     if not handle.accepted:
         raise SingulationError(ResultCode.REJECTED, "singulate_node rejected the goal; its log says why")
     ended = handle.get_result_async()
+    shown = -1
     try:
         while not ended.done():
             command.wait(lambda: ended.done() or news, _PER_PUSH, "the next push")
-            while news:
-                print(progress_text(news.pop(0)), flush=True)
+            shown = _show(news, shown)
     except SingulationError as error:
         handle.cancel_goal_async()
         command.settle(ended.done, _STOP)
@@ -67,10 +67,21 @@ def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
     return ended.result().result
 
 
+def _show(news: list[Any], shown: int) -> int:
+    """Print what came; the number of pushes after which something was printed last."""
+    while news:
+        feedback = news.pop(0)
+        if feedback.pushes_done > shown:  # several for each push
+            print(progress_text(feedback), flush=True)
+            shown = feedback.pushes_done
+    return shown
+
+
 def progress_text(feedback: Any) -> str:
     """Feedback in a line."""
     gap = f"{1e3 * feedback.smallest_gap:.1f} mm"
-    return f"{feedback.pushes_done} pushes: s(A) {feedback.singulation_distance:.3f}, smallest gap {gap}"
+    pushes = f"{feedback.pushes_done} push{'' if feedback.pushes_done == 1 else 'es'}"
+    return f"{pushes}: s(A) {feedback.singulation_distance:.3f}, smallest gap {gap}"
 
 
 def result_text(result: Any) -> str:
