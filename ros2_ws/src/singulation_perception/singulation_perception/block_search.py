@@ -11,6 +11,7 @@ from singulation_perception.face_blocks import FaceBlocks
 from singulation_perception.face_rings import face_rings
 from singulation_perception.found_block import FoundBlock
 from singulation_perception.hidden import View
+from singulation_perception.hidden_corners import with_hidden_corners
 from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.piles import settled
@@ -65,6 +66,7 @@ def blocks_of(
     rings = face_rings(seen.xyz, *rims(maps), faces.count[chosen], noise, view.camera)
     every = FaceBlocks(seen, faces, maps, rings, view, parameters, noise)
     found = every.found(_suspects(faces, chosen, noise), dropped)
+    found = with_hidden_corners(found, every, band)
     found, dropped["stacked"] = settled(_with_size_doubts(found, parameters.max_extent), band)
     objects = [PlanarObject(i, one.outline, one.height, one.count, one.confidence) for i, one in enumerate(found)]
     return Blocks(objects, [one.surface for one in found], surfaces, dropped)

@@ -17,11 +17,12 @@ Flags = NDArray[np.bool_]
 
 _USUAL_SUPPORT = 0.9  # share of the outline with points; corners never have them
 _USUAL_FILL = 0.8
+_DOUBT = 0.45  # each of them alone says: do not rely on this
 _CLEAR_LEAD = 0.008  # [m] by which the second best way to cut is dearer when there is no doubt
-UNUSUAL_EXTENT = 1.5  # times the median, from which a block may be two
+UNUSUAL_EXTENT = 1.6  # times the median, from which a block may be two
 FEWEST_TO_COMPARE = 4
 
-FLUSH, STACKED, CLIPPED = 0.45, 0.3, 0.8
+FLUSH, STACKED, CLIPPED, COMPLETED = 0.45, 0.3, 0.8, 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +35,8 @@ class Evidence:
         flat: (n,) whether the face is a level with many points.
         concave: (n,) whether it covers a pocket that no cut explains.
         truncated: (n,) whether it ends at the border of the workspace or of the image.
-        lead: (n,) how much dearer the next best way to cut was, for the most doubtful seam beside it [m].
+        lead: (n,) how much dearer the best way without it was, for the most doubtful seam beside the outline [m].
+        loose: (n,) whether a seam beside it ends where nothing shows it.
     """
 
     supported: FloatArray
@@ -43,15 +45,16 @@ class Evidence:
     concave: Flags
     truncated: Flags
     lead: FloatArray
+    loose: Flags
 
     @property
     def confidence(self) -> FloatArray:
         """(n,) 0..1."""
         value = 0.3 + 0.7 * np.minimum(1.0, self.supported / _USUAL_SUPPORT)
         value *= np.minimum(1.0, self.filled / _USUAL_FILL)
-        value *= 0.55 + 0.45 * np.minimum(1.0, self.lead / _CLEAR_LEAD)
-        doubts = (~self.flat).astype(np.int64) + self.concave + self.truncated
-        return np.minimum(1.0, value * 0.5**doubts)
+        value *= 0.35 + 0.65 * np.minimum(1.0, self.lead / _CLEAR_LEAD)
+        doubts = (~self.flat).astype(np.int64) + self.concave + self.truncated + self.loose
+        return np.minimum(1.0, value * _DOUBT**doubts)
 
 
 @compiled_part

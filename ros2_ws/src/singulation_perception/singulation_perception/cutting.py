@@ -11,6 +11,7 @@ from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale, concave_area, least_width, ring_area
 
 _STRAY = 6.0  # pitches from the ends of a cut within which points of the other piece are left over
+_BESIDE_END = 12.0  # pitches from the end of a cut within which the rim shows where the corner of a piece is
 _FEWEST = 8  # points of a piece
 _SMALLEST = 40.0  # square pitches, of a piece
 PER_AREA = 1.0 / 0.003  # [1/m] concave outline of 3 mm depth costs its length
@@ -86,6 +87,9 @@ def piece(
     ax, ay, bx, by = ring[last, 0], ring[last, 1], ring[first, 0], ring[first, 1]
     start = (ax - cx) * ux + (ay - cy) * uy
     stop = (bx - cx) * ux + (by - cy) * uy
+    way = 1.0 if stop > start else -1.0
+    start += way * _overshoot(ring, last, -1, steps, (cx, cy, ux, uy), way, scale)
+    stop -= way * _overshoot(ring, first, 1, steps, (cx, cy, ux, uy), -way, scale)
     stray = _STRAY * scale.pitch
     seam = max(2, min(4 * size, int(abs(stop - start) / scale.pitch)))
     out = np.empty((steps + seam, 2))
@@ -94,7 +98,7 @@ def piece(
         i = (first + k) % size
         x, y = ring[i, 0], ring[i, 1]
         near = min((x - ax) * (x - ax) + (y - ay) * (y - ay), (x - bx) * (x - bx) + (y - by) * (y - by))
-        if (y - cy) * ux - (x - cx) * uy >= 0.0 or near > stray * stray:
+        if (y - cy) * ux - (x - cx) * uy >= scale.roughness or near > stray * stray:
             out[count, 0], out[count, 1] = x, y
             count += 1
     for k in range(1, seam):
@@ -102,6 +106,39 @@ def piece(
         out[count, 0], out[count, 1] = cx + t * ux - scale.growth * uy, cy + t * uy + scale.growth * ux
         count += 1
     return out[:count]
+
+
+@compiled_plain
+def _overshoot(
+    ring: FloatArray, end: int, step: int, steps: int, line: tuple[float, float, float, float], way: float, scale: Scale
+) -> float:
+    """How far outside the corner of its piece a cut begins [m]: the rim of the piece, continued to the cut, tells.
+
+    Args:
+        end: point of the ring at the beginning of the cut.
+        step: 1 or -1, from there along the rim of the piece.
+        steps: points of that rim.
+        line: point and direction of the seam, with the piece to its left.
+        way: sign, along the direction, of what lies inside.
+    """
+    cx, cy, ux, uy = line
+    size = len(ring)
+    most = _BESIDE_END * scale.pitch
+    n, a, t, aa, at = 0, 0.0, 0.0, 0.0, 0.0
+    for k in range(min(steps // 2, int(2.0 * _BESIDE_END))):
+        i = (end + step * k) % size
+        x, y = ring[i, 0] - cx, ring[i, 1] - cy
+        across, along = y * ux - x * uy, x * ux + y * uy
+        if scale.roughness < across < most:
+            n, a, t, aa, at = n + 1, a + across, t + along, aa + across * across, at + across * along
+    spread = n * aa - a * a
+    if n < 4 or not (spread > 0.0):
+        return 0.0
+    slope = (n * at - a * t) / spread
+    corner = (t - slope * a) / n + slope * scale.growth
+    begin = (ring[end, 0] - cx) * ux + (ring[end, 1] - cy) * uy
+    beyond = way * (corner - begin)
+    return beyond if scale.pitch < beyond < _STRAY * scale.pitch else 0.0
 
 
 @compiled

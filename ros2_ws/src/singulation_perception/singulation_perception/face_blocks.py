@@ -11,7 +11,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.boundaries import FaceMaps
 from singulation_perception.confidence import Evidence
 from singulation_perception.cutting import PER_AREA
-from singulation_perception.face_image import face_image
+from singulation_perception.face_image import FaceImage, face_image
 from singulation_perception.face_rings import FaceRings
 from singulation_perception.found_block import FoundBlock, shares
 from singulation_perception.hidden import View, without_hidden
@@ -30,12 +30,13 @@ _BESIDE = 4.0  # pitches between a seam's middle and the rim of a piece beside i
 @dataclass(frozen=True, eq=False)
 class _Piece:
     """Part of a face that may be a block: number of the face's image, (m, 2) rim [m], lead of the most doubtful seam
-    beside it [m].
+    beside it [m], whether one of its seams ends where nothing shows it.
     """
 
     face: int
     ring: FloatArray
-    lead: float
+    lead: float = np.inf
+    loose: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,12 +70,7 @@ class FaceBlocks:
         """
         slivers = self._slivers()
         dropped["sliver"] += sum(slivers)
-        pieces = [
-            _Piece(k, ring, lead)
-            for k, sliver in enumerate(slivers)
-            if not sliver
-            for ring, lead in self._rings(k, suspects[k])
-        ]
+        pieces = [piece for k, sliver in enumerate(slivers) if not sliver for piece in self._pieces(k, suspects[k])]
         face = np.array([piece.face for piece in pieces], dtype=np.int32)
         outlines = outlines_of([piece.ring for piece in pieces], self._measures()[face])
         confidence = self._evidence(face, pieces, outlines).confidence.tolist()
@@ -85,6 +81,29 @@ class FaceBlocks:
             found += blocks
         return found
 
+    def pitch(self, k: int) -> float:
+        """Distance of neighbouring points on face k [m]."""
+        return float(self.rings.pitch[k])
+
+    def levels(self, k: int, places: FloatArray) -> NDArray[np.float32]:
+        """(m,) heights that the camera sees in the direction of (m, 2) places on face k or beside it [m].
+
+        NaN where it sees nothing.
+        """
+        cloud = self.view.cloud
+        if cloud is None:
+            return np.full(len(places), np.nan, dtype=np.float32)
+        rows, columns = np.clip(self._image(k).pixels(places), 0, (cloud.height - 1, cloud.width - 1)).T
+        first = rows.astype(np.int64) * cloud.row_step + columns * cloud.point_step
+        points = cloud.numbers[first[:, np.newaxis] + np.arange(3)]
+        points[~points.any(axis=1)] = np.nan
+        plane = self.view.plane.astype(np.float32)
+        return np.asarray(points @ plane[:3] + plane[3])
+
+    def _image(self, k: int) -> FaceImage:
+        pixels = self.rings.pixels[self.rings.begin[k] : self.rings.begin[k + 1]]
+        return face_image(self.maps.image(k), self.maps.box[k, :2], self.seen.xyz, self.rings.ring(k), pixels)
+
     def _slivers(self) -> list[bool]:
         """Which faces are too narrow for a block: a wall seen from above, or what the crop left of something."""
         least = self.parameters.min_width
@@ -92,7 +111,7 @@ class FaceBlocks:
         return [not good for good in (wide & (self.rings.thickness >= 0.5 * least)).tolist()]
 
     def _scale(self, k: int) -> Scale:
-        pitch = float(self.rings.pitch[k])
+        pitch = self.pitch(k)
         return Scale(pitch, self.parameters.edge_growth * pitch, float(self.rings.roughness[k]))
 
     def _measures(self) -> FloatArray:
@@ -111,29 +130,28 @@ class FaceBlocks:
         counts, heights = self._shares(k, [outline for outline, _ in good])
         surface = int(self.faces.surface[self.maps.faces[k]])
         return [
-            FoundBlock(outline, height, count, confidence, surface)
+            FoundBlock(outline, height, count, confidence, surface, k)
             for (outline, confidence), count, height in zip(good, counts, heights, strict=True)
         ]
 
-    def _rings(self, k: int, suspects: Suspects) -> Iterator[tuple[FloatArray, float]]:
-        """Rims of the blocks of one face, and the lead of the most doubtful seam of each [m]."""
+    def _pieces(self, k: int, suspects: Suspects) -> Iterator[_Piece]:
+        """The parts of one face that may be blocks."""
         ring, scale = self.rings.ring(k), self._scale(k)
-        pixels = self.rings.pixels[self.rings.begin[k] : self.rings.begin[k + 1]]
         cutting = self.parameters.split_touching
         concave = bool(self.rings.concave[k] > 0.0)
         looking = cutting and (suspects.groove or suspects.step)
         if not (concave or looking):
-            yield ring, np.inf
+            yield _Piece(k, ring)
             return
-        image = face_image(self.maps.image(k), self.maps.box[k, :2], self.seen.xyz, ring, pixels)
+        image = self._image(k)
         height = float(self.faces.height[self.maps.faces[k]])
         for part in split_seen(ring, scale, image, suspects) if looking else (ring,):
             if part is ring and not concave:
-                yield ring, np.inf
+                yield _Piece(k, ring)
                 continue
             whole = without_hidden(part, image.pixels(part), scale.roughness, self.view, height)
             result = split(whole, scale, image, self.noise) if cutting else Split(0.0, (whole,))
-            yield from ((piece, _lead(piece, result, scale)) for piece in result.pieces)
+            yield from (_Piece(k, piece, *_doubts(piece, result, scale)) for piece in result.pieces)
 
     def _shares(self, k: int, outlines: list[FloatArray]) -> tuple[list[int], list[float]]:
         face = self.maps.faces[k]
@@ -154,6 +172,7 @@ class FaceBlocks:
             concave=~whole & (outlines.concave * PER_AREA >= CONVEX),
             truncated=self._at_border(k, outlines.box),
             lead=np.array([piece.lead for piece in pieces]),
+            loose=np.array([piece.loose for piece in pieces], dtype=bool),
         )
 
     def _at_border(self, k: IntArray, box: FloatArray) -> NDArray[np.bool_]:
@@ -171,11 +190,11 @@ class FaceBlocks:
         return at_border
 
 
-def _lead(piece: FloatArray, result: Split, scale: Scale) -> float:
-    """Least lead of the cuts beside a piece [m]; infinite if there are none."""
-    least = np.inf
-    for cut, rival in zip(result.cuts, result.rivals, strict=True):
+def _doubts(piece: FloatArray, result: Split, scale: Scale) -> tuple[float, bool]:
+    """Least lead of the cuts beside a piece [m], infinite if there are none, and whether one of them is loose."""
+    least, any_loose = np.inf, False
+    for cut, rival, loose in zip(result.cuts, result.rivals, result.loose, strict=True):
         middle = cut.mean(axis=0)
         if float(np.hypot(*(piece - middle).T).min()) < _BESIDE * scale.pitch:
-            least = min(least, rival)
-    return float(least)
+            least, any_loose = min(least, rival), any_loose or loose
+    return float(least), any_loose

@@ -21,6 +21,7 @@ class FoundBlock:
         count: points of its top face.
         confidence: 0..1.
         surface: number of the surface it belongs to.
+        face: number of the image of its top face.
     """
 
     outline: FloatArray
@@ -28,6 +29,7 @@ class FoundBlock:
     count: int
     confidence: float
     surface: int
+    face: int
 
     @cached_property
     def centre(self) -> FloatArray:
@@ -38,6 +40,10 @@ class FoundBlock:
     def radius(self) -> float:
         """Of the bounding circle about the area centroid [m]."""
         return bounding_radius(self.outline, self.centre)
+
+    def redrawn(self, outline: FloatArray, factor: float) -> "FoundBlock":
+        """The same block with another outline and less confidence."""
+        return replace(self, outline=outline, confidence=self.confidence * factor)
 
     def doubted(self, factor: float) -> "FoundBlock":
         """The same block with less confidence."""

@@ -18,6 +18,7 @@ _SEEN_LOWER = 0.3  # share of a pocket that is seen to be lower, from which on i
 _TALLER = 0.03  # share of taller points around a pocket that can have hidden it
 _AROUND = 6  # pixels
 _ROWS = 30  # of a pocket and its surroundings that are looked at, about
+_FEWEST = 6  # points of a rim between two hidden pockets
 _SHADOW = 0.35  # tangent of the projector's view beside the camera's: 0.23 m of baseline at 0.65 m and more
 
 
@@ -34,6 +35,18 @@ class View:
     camera: FloatArray
     plane: FloatArray
     cloud: Raster | None
+
+
+def reach_of_shadows(view: View, place: FloatArray, height: float) -> float:
+    """Length of what something hides from the camera or the projector, in its height above a face.
+
+    Args:
+        view: of the camera.
+        place: (2,) on the face [m].
+        height: of the face [m].
+    """
+    away = float(np.hypot(*(view.camera[:2] - place)))
+    return away / max(abs(float(view.camera[2]) - height), 1e-3) + _SHADOW
 
 
 def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: View, height: float) -> FloatArray:
@@ -55,8 +68,7 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
     if view.cloud is None:
         return ring
     keep = np.ones(len(ring), dtype=bool)
-    way = view.camera[:2] - ring[0]
-    reach = float(np.hypot(*way)) / max(abs(float(view.camera[2]) - height), 1e-3) + _SHADOW
+    reach = reach_of_shadows(view, ring[0], height)
     plane = view.plane.astype(np.float32)
     for first, last, _, depth in pockets(ring, hull_indices(ring), roughness):
         around = np.arange(int(first), int(last) + 1) % len(ring)
@@ -67,7 +79,18 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
         tall_enough = depth < reach * (level - height) + 2.0 * roughness
         if hidden and (tall_enough or covered > _COVERED * inside):
             keep[around[1:-1]] = False
-    return np.asarray(ring[keep])
+    return np.asarray(ring[keep & ~_scattered(keep)])
+
+
+def _scattered(keep: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Points left over between hidden pockets, too few for a rim: the wall of what is taller has some at any height."""
+    begin = np.flatnonzero(keep & ~np.roll(keep, 1))
+    few = np.zeros_like(keep)
+    for first in begin.tolist():
+        run = (first + np.arange(_FEWEST)) % len(keep)
+        if not keep[run].all():
+            few[run] = True
+    return few
 
 
 @compiled

@@ -6,7 +6,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.confidence import supported_share
-from singulation_perception.edge_fit import corners_of, refitted
+from singulation_perception.edge_fit import corners_of, edges_of, refitted
 from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
@@ -26,7 +26,7 @@ class Outlines:
         corners: (m, 2) of all of them, counter-clockwise [m].
         first: (n + 1,) first corner of each; fewer than three where a ring has no area.
         supported: (n,) share of the length of each outline with points of its ring near it.
-        concave: (n,) area between each ring and its hull, roughness apart [m^2].
+        concave: (n,) area between each ring and its hull, roughness and spurs apart [m^2].
         box: (n, 4) least and greatest x, least and greatest y of each outline [m].
     """
 
@@ -77,6 +77,9 @@ def _outlines(
                 box[k, 2], box[k, 3] = min(box[k, 2], y), max(box[k, 3], y)
                 count += 1
             concave[k] = concave_area(ring, hull, scale.roughness)
+            if concave[k] > 0.0:
+                inner = _without_spurs(ring, outline, scale.pitch)
+                concave[k] = concave_area(inner, hull_indices(inner), scale.roughness)
             supported[k] = supported_share(outline, ring, scale.roughness + scale.growth, scale.pitch)
         first[k + 1] = count
     return corners[:count], first, supported, concave, box
@@ -103,6 +106,24 @@ def _fitted(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) ->
         if settled:
             break
     return grown
+
+
+@compiled_part
+def _without_spurs(ring: FloatArray, outline: FloatArray, reach: float) -> FloatArray:
+    """The points of a ring that lie at most ``reach`` outside its outline.
+
+    A cut that begins beyond the corner of its piece leaves a spur there, and the hull spans a pocket beside it.
+    """
+    inner, count = np.empty_like(ring), 0
+    lines = edges_of(outline)
+    for i in range(len(ring)):
+        outside = -np.inf
+        for k in range(len(lines)):
+            outside = max(outside, lines[k, 0] * ring[i, 0] + lines[k, 1] * ring[i, 1] - lines[k, 2])
+        if outside <= reach:
+            inner[count, 0], inner[count, 1] = ring[i, 0], ring[i, 1]
+            count += 1
+    return inner[:count]
 
 
 @compiled_part

@@ -10,6 +10,7 @@ from singulation_perception.found_block import FoundBlock
 _STACKED = 0.25  # share of the upper block that lies over the lower one
 _NEGLIGIBLE = 0.02  # share of the lower block that noise explains
 _SLIVER = 1e-7  # [m^2]
+_DETAIL = 0.0015  # [m] by which the corners of what is left over after a cut must stand out
 
 
 def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], int]:
@@ -23,7 +24,7 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
         The blocks, and how many lie on others and became part of their pile.
     """
     waiting = sorted(blocks, key=lambda block: block.height)
-    if not any(_overlap(waiting[i], waiting[j]) for i, j in _near_pairs(waiting, step)):
+    if not any(_overlap(waiting[i], waiting[j]) for i, j in near_pairs(waiting, step)):
         return waiting, 0
     done: list[FoundBlock] = []
     stacked = 0
@@ -41,7 +42,7 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
     return done, stacked
 
 
-def _near_pairs(blocks: list[FoundBlock], step: float) -> list[tuple[int, int]]:
+def near_pairs(blocks: list[FoundBlock], step: float) -> list[tuple[int, int]]:
     """Lower and higher block of all pairs of different height whose bounding circles meet."""
     if len(blocks) < 2:
         return []
@@ -79,7 +80,7 @@ def cut_off(outline: FloatArray, normal: FloatArray, offset: float) -> FloatArra
 def _pile(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
     outline = convex_hull(np.vstack((lower.outline, upper.outline)))
     confidence = STACKED * min(lower.confidence, upper.confidence)
-    return FoundBlock(outline, upper.height, lower.count + upper.count, confidence, lower.surface)
+    return FoundBlock(outline, upper.height, lower.count + upper.count, confidence, lower.surface, lower.face)
 
 
 def _clipped(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
@@ -91,5 +92,18 @@ def _clipped(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
     best = max(parts, key=lambda part: signed_area(part) if len(part) > 2 else 0.0)
     if len(best) < 3 or not (signed_area(best) > _SLIVER):
         return lower.doubted(STACKED)
-    best = convex_hull(best)
-    return FoundBlock(best, lower.height, lower.count, CLIPPED * lower.confidence, lower.surface)
+    best = _without_details(convex_hull(best))
+    return FoundBlock(best, lower.height, lower.count, CLIPPED * lower.confidence, lower.surface, lower.face)
+
+
+def _without_details(outline: FloatArray) -> FloatArray:
+    """A convex outline without corners that hardly stand out between their neighbours, the flattest first."""
+    while len(outline) > 3:
+        before, after = np.roll(outline, 1, axis=0), np.roll(outline, -1, axis=0)
+        ways, offs = after - before, outline - before
+        depths = np.abs(ways[:, 0] * offs[:, 1] - ways[:, 1] * offs[:, 0]) / np.hypot(ways[:, 0], ways[:, 1])
+        flattest = int(depths.argmin())
+        if not (depths[flattest] < _DETAIL):
+            break
+        outline = np.delete(outline, flattest, axis=0)
+    return outline

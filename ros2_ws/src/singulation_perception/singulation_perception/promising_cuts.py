@@ -5,13 +5,14 @@ import numpy as np
 from singulation_core.polygon import FloatArray
 from singulation_perception.cutting import both_pieces, estimated, left_concave, seam_line
 from singulation_perception.face_image import FaceImage
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.rings import Scale
-from singulation_perception.seams import candidates, edges_between
+from singulation_perception.seams import candidates, edges_between, one_seam
 from singulation_perception.simplified import simplified
 from singulation_perception.traces import trace_strength
 
 _CORNER_TOLERANCE = 0.72  # of the roughness, for Douglas-Peucker when corners are sought
+_TOLD = 0.5  # strength of a trace from which on it tells where a cut ends
 _SEEN = 0.8  # share of a cut's cost that a trace beyond doubt saves
 
 
@@ -27,11 +28,11 @@ def promising_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: floa
         most: how many cuts to weigh; a rough estimate chooses them.
 
     Returns:
-        (c, 8), cheapest first: cost with what is left concave [m], cost of the cut [m], the points of the ring at its
-        ends, point and unit direction of its line [m].
+        (c, 9), cheapest first: cost with what is left concave [m], cost of the cut [m], the points of the ring at its
+        ends, point and unit direction of its line [m], and whether nothing shows where it ends.
     """
     index = simplified(ring, _CORNER_TOLERANCE * scale.roughness)
-    cuts = np.empty((most, 8))
+    cuts = np.empty((most, 9))
     if len(index) < 4:
         return cuts[:0]
     lines, length, fitted = edges_between(ring, index)
@@ -53,12 +54,32 @@ def promising_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: floa
         first, second = both_pieces(ring, i, j, line, scale)
         total = cost + left_concave(first, second, scale)
         if total < np.inf:
+            same = _same_seam(cuts, count, ring, i, j, scale.pitch)
+            if same >= 0 and cuts[same, 0] <= total:
+                continue
+            if same >= 0:
+                count -= 1
+                for row in range(same, count):
+                    for column in range(9):
+                        cuts[row, column] = cuts[row + 1, column]
             at = count
             while at > 0 and cuts[at - 1, 0] > total:
-                for column in range(8):
+                for column in range(9):
                     cuts[at, column] = cuts[at - 1, column]
                 at -= 1
             cuts[at, 0], cuts[at, 1], cuts[at, 2], cuts[at, 3] = total, cost, i, j
             cuts[at, 4], cuts[at, 5], cuts[at, 6], cuts[at, 7] = line
+            cuts[at, 8] = possible[k, 6] > 0.0 and strength < _TOLD
             count += 1
     return cuts[:count]
+
+
+@compiled_plain
+def _same_seam(cuts: FloatArray, count: int, ring: FloatArray, i: int, j: int, pitch: float) -> int:
+    """Which of the first ``count`` cuts runs along the seam from point i to point j; -1 if none does."""
+    for k in range(count):
+        a, b = int(cuts[k, 2]), int(cuts[k, 3])
+        ax, ay, bx, by = ring[a, 0], ring[a, 1], ring[b, 0], ring[b, 1]
+        if one_seam(ax, ay, bx, by, ring[i, 0], ring[i, 1], ring[j, 0], ring[j, 1], pitch):
+            return k
+    return -1

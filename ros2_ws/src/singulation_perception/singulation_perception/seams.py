@@ -11,7 +11,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import fitted_line
-from singulation_perception.jit import compiled_part, compiled_plain
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 
 _REFLEX = -0.1  # sine of the turn
@@ -20,13 +20,15 @@ _SHORTEST_EDGE = 3.0  # pitches, of an edge that is continued
 _SHORTEST_SEAM = 4.0  # pitches
 _NECK = 12.0  # pitches: two reflex corners that near are joined whatever their edges say
 _NEAR = 20  # points along the ring within which two corners are neighbours
+_SAME = 8.0  # pitches between two cuts along one seam
 _ALIGNED = 0.12  # sine up to which an edge at the far end counts as part of the seam
 
 # What a cut costs, in metres of concave outline that it must explain.
-_OPEN_END = 0.006  # it ends in the middle of an edge
+_OPEN_END = 0.010  # it ends in the middle of an edge
 _CORNER_END = 0.002  # it ends at a corner that is not reflex
 _BEND = 0.02  # times the sine between the cut and the best edge at its far end
 _NECK_CUT = 0.002  # joining two near reflex corners across
+_PAIR_CUT = 0.004  # joining two others, whatever their edges say
 
 
 @compiled_part
@@ -64,12 +66,14 @@ def edges_between(ring: FloatArray, index: IntArray) -> tuple[FloatArray, FloatA
 
 @compiled_part
 def candidates(ring: FloatArray, index: IntArray, lines: FloatArray, length: FloatArray, pitch: float) -> FloatArray:
-    """Possible cuts, (c, 6): first and last point, length [m], penalty [m], and the edges it continues, -1 for none."""
+    """Possible cuts, (c, 7): first and last point, length [m], penalty [m], the edges it continues, -1 for none, and
+    whether it ends in the middle of an edge.
+    """
     count = len(index)
     turn = np.empty(count)
     for k in range(count):
         turn[k] = lines[k - 1, 0] * lines[k, 1] - lines[k - 1, 1] * lines[k, 0]
-    found = np.empty((count * count + 2 * count, 6))
+    found = np.empty((count * count + 2 * count, 7))
     size, none = 0, np.int64(-1)
     for k in range(count):
         if turn[k] >= _REFLEX:
@@ -88,12 +92,17 @@ def candidates(ring: FloatArray, index: IntArray, lines: FloatArray, length: Flo
                 penalty = _BEND * min(sine, 0.3) if turn[end] < _REFLEX else _CORNER_END
             aligned = end >= 0 and turn[end] < _REFLEX and sine < _ALIGNED
             _write(found, np.int64(size), np.int64(index[k]), hit, reach, penalty, edge, other if aligned else none)
+            found[size, 6] = end < 0
             size += 1
         for other in range(k + 1, count):
             across = _distance(ring, np.int64(index[k]), np.int64(index[other]))
             apart = _apart(np.int64(index[k]), np.int64(index[other]), len(ring))
-            if turn[other] < _REFLEX and across < _NECK * pitch and apart > _NEAR:
-                _write(found, np.int64(size), np.int64(index[k]), np.int64(index[other]), across, _NECK_CUT, none, none)
+            near = across < _NECK * pitch
+            if turn[other] < _REFLEX and apart > _NEAR and (near or _faces_inwards(ring, index, lines, k, other)):
+                first, last = np.int64(index[k]), np.int64(index[other])
+                one, two = _along_edge(ring, index, lines, k, last), _along_edge(ring, index, lines, other, first)
+                _write(found, np.int64(size), first, last, across, _NECK_CUT if near else _PAIR_CUT, one, two)
+                found[size, 6] = 0.0
                 size += 1
     return found[:size]
 
@@ -104,6 +113,28 @@ def _write(
 ) -> None:
     cuts[k, 0], cuts[k, 1], cuts[k, 2] = first, last, length
     cuts[k, 3], cuts[k, 4], cuts[k, 5] = penalty, edge, other
+
+
+@compiled_plain
+def _faces_inwards(ring: FloatArray, index: IntArray, lines: FloatArray, one: int, two: int) -> bool:
+    """Whether the way between two reflex corners begins inside the ring at either end."""
+    x, y = ring[index[two], 0] - ring[index[one], 0], ring[index[two], 1] - ring[index[one], 1]
+    for k in (one, two):
+        if lines[k, 0] * x + lines[k, 1] * y >= 0.0 and lines[k - 1, 0] * x + lines[k - 1, 1] * y >= 0.0:
+            return False
+        x, y = -x, -y
+    return True
+
+
+@compiled_plain
+def _along_edge(ring: FloatArray, index: IntArray, lines: FloatArray, corner: int, point: int) -> int:
+    """The edge at a corner that the way to a point of the ring continues; -1 if neither does."""
+    x, y = ring[point, 0] - ring[index[corner], 0], ring[point, 1] - ring[index[corner], 1]
+    before, after = (corner - 1) % len(index), corner
+    one, two = abs(lines[before, 0] * x + lines[before, 1] * y), abs(lines[after, 0] * x + lines[after, 1] * y)
+    if min(one, two) > _ALIGNED * math.sqrt(x * x + y * y):
+        return -1
+    return before if one < two else after
 
 
 @compiled_plain
@@ -169,3 +200,23 @@ def _end(
             best, best_rank = k, rank
             best_edge, best_sine = ((k - 1) % len(index), before) if before < after else (k, after)
     return best, best_edge, best_sine
+
+
+@compiled
+def one_seam(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float, pitch: float
+) -> bool:
+    """Whether of two cuts, a-b and c-d, one lies along the other: the same seam, found from another corner."""
+    reach = _SAME * pitch
+    within = max(_to_segment(ax, ay, cx, cy, dx, dy), _to_segment(bx, by, cx, cy, dx, dy)) < reach
+    return within or max(_to_segment(cx, cy, ax, ay, bx, by), _to_segment(dx, dy, ax, ay, bx, by)) < reach
+
+
+@compiled_plain
+def _to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """Distance of a place to the segment a-b [m]."""
+    ex, ey = bx - ax, by - ay
+    t = ((x - ax) * ex + (y - ay) * ey) / max(ex * ex + ey * ey, 1e-18)
+    t = min(1.0, max(0.0, t))
+    x, y = x - ax - t * ex, y - ay - t * ey
+    return math.sqrt(x * x + y * y)

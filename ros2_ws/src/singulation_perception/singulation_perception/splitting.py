@@ -1,6 +1,6 @@
 """Splitting a face that holds several touching blocks: the cheapest set of cuts that leaves convex pieces."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from singulation_perception.cutting import along, both_pieces, chord, concave_co
 from singulation_perception.face_image import FaceImage
 from singulation_perception.promising_cuts import promising_cuts
 from singulation_perception.rings import Scale
+from singulation_perception.seams import one_seam
 from singulation_perception.traces import trace_strength
 
 _BRANCHES = (3, 2, 2, 1)  # cuts that are followed up, by depth
@@ -40,13 +41,15 @@ class Split:
         cost: of the cuts and of what remains concave [m].
         pieces: rings.
         cuts: both ends of each cut, (2, 2) [m].
-        rivals: for each cut, how much dearer the next best way to cut was [m].
+        rivals: for each cut, how much dearer the best way without it was [m].
+        loose: for each cut, whether nothing shows where it ends.
     """
 
     cost: float
     pieces: tuple[FloatArray, ...]
     cuts: tuple[FloatArray, ...] = ()
     rivals: tuple[float, ...] = ()
+    loose: tuple[bool, ...] = ()
 
 
 def split(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, depth: int = 0) -> Split:
@@ -62,22 +65,20 @@ def split(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, depth:
     uncut = Split(concave_cost(ring, scale.roughness), (ring,))
     if depth == len(_BRANCHES) or uncut.cost < CONVEX:
         return uncut
-    best, second, chosen = uncut, np.inf, None
+    best, ways = uncut, [uncut]
     follow = _BRANCHES[depth]
-    for _, cost, first, last, *line in promising_cuts(ring, scale, image, noise, 2 * follow)[:follow].tolist():
-        if cost >= best.cost:
-            break
+    for k, (left, cost, first, last, *line, loose) in enumerate(
+        promising_cuts(ring, scale, image, noise, 2 * follow).tolist()
+    ):
         i, j = int(first), int(last)
         cut = ring[[i, j]]
+        if k >= follow or cost >= best.cost:
+            ways.append(Split(left, (), (cut,)))
+            continue
         parts = both_pieces(ring, i, j, tuple(line), scale)
-        pieces = [split(part, scale, image, noise, depth + 1) for part in parts]
-        total = cost + sum(piece.cost for piece in pieces)
-        if total < best.cost:
-            second, chosen = best.cost, (cut, pieces)
-            best = _joined(total, cut, 0.0, pieces)
-        else:
-            second = min(second, total)
-    return uncut if chosen is None else _joined(best.cost, chosen[0], second - best.cost, chosen[1])
+        ways.append(_joined(cost, cut, bool(loose), [split(part, scale, image, noise, depth + 1) for part in parts]))
+        best = min(best, ways[-1], key=lambda way: way.cost)
+    return _with_rivals(best, ways, scale)
 
 
 def split_seen(
@@ -98,11 +99,24 @@ def split_seen(
     return (ring,)
 
 
-def _joined(cost: float, cut: FloatArray, rival: float, parts: list[Split]) -> Split:
+def _joined(cost: float, cut: FloatArray, loose: bool, parts: list[Split]) -> Split:
     first, second = parts
     return Split(
-        cost,
+        cost + first.cost + second.cost,
         first.pieces + second.pieces,
         (cut, *first.cuts, *second.cuts),
-        (rival, *first.rivals, *second.rivals),
+        (np.inf, *first.rivals, *second.rivals),
+        (loose, *first.loose, *second.loose),
     )
+
+
+def _with_rivals(best: Split, ways: list[Split], scale: Scale) -> Split:
+    """The best way with the leads of its cuts over all ways that do without them: order makes no other way."""
+    rivals = list(best.rivals)
+    for k, cut in enumerate(best.cuts):
+        for way in ways:
+            if way.cost - best.cost < rivals[k] and not any(
+                one_seam(*cut.flat, *other.flat, scale.pitch) for other in way.cuts
+            ):
+                rivals[k] = way.cost - best.cost
+    return replace(best, rivals=tuple(rivals))
