@@ -24,6 +24,7 @@ from singulation_planner import POLICIES
 
 _SERVICES = ("halt", "trigger_frame", "reset")
 _PER_PUSH = 120.0  # s, longest wait for the next push; the coordinator has its own, shorter ones
+_ACCEPT = 5.0  # s, for a goal to be accepted that Ctrl-C overtook
 _STOP = 30.0  # s, for the robot to stand after Ctrl-C
 
 
@@ -50,21 +51,26 @@ def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
     client = ActionClient(command.node, Singulate, "singulate")
     command.wait(client.server_is_ready, timeout, "action singulate")
     sent = client.send_goal_async(goal, feedback_callback=lambda message: news.append(message.feedback))
-    command.wait(sent.done, timeout, "answer of singulate")
-    handle = sent.result()
-    if not handle.accepted:
-        raise SingulationError(ResultCode.REJECTED, "singulate_node rejected the goal; its log says why")
-    ended = handle.get_result_async()
-    shown = -1
     try:
+        command.wait(sent.done, timeout, "answer of singulate")
+        if not sent.result().accepted:
+            raise SingulationError(ResultCode.REJECTED, "singulate_node rejected the goal; its log says why")
+        ended, shown = sent.result().get_result_async(), -1
         while not ended.done():
             command.wait(lambda: ended.done() or news, _PER_PUSH, "the next push")
             shown = _show(news, shown)
-    except SingulationError as error:
-        handle.cancel_goal_async()
-        command.settle(ended.done, _STOP)
-        raise error
+    except SingulationError:
+        _withdraw(command, sent)
+        raise
     return ended.result().result
+
+
+def _withdraw(command: CommandNode, sent: Any) -> None:
+    """Cancel the goal, even one that is only just being accepted, and give the coordinator time to stop the robot."""
+    if command.settle(sent.done, _ACCEPT) and sent.result().accepted:
+        ended = sent.result().get_result_async()
+        sent.result().cancel_goal_async()
+        command.settle(ended.done, _STOP)
 
 
 def _show(news: list[Any], shown: int) -> int:
