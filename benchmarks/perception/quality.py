@@ -90,7 +90,9 @@ def touching_settings(scenes: int) -> list[Setting]:
         replace(pairs, name="triples, equal heights", seed=HELD_OUT + 13_000, group=3),
         replace(pairs, name="triples, heights 20 to 40 mm", seed=HELD_OUT + 14_000, group=3, heights="uniform"),
         replace(pairs, name="corner against edge, equal heights", seed=HELD_OUT + 15_000, corner=True),
+        replace(pairs, name="pairs, equal heights, noise 0.2 mm", seed=HELD_OUT + 17_000, noise=0.0002),
         replace(pairs, name="pairs, equal heights, noise 0.3 mm", seed=HELD_OUT + 16_000, noise=0.0003),
+        replace(pairs, name="quads, equal heights", seed=HELD_OUT + 18_000, group=4),
     ]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from singulation_core import PlanarObject
 from singulation_perception.boundaries import face_maps, rims
-from singulation_perception.confidence import FEWEST_TO_COMPARE, FLUSH, UNUSUAL_EXTENT
+from singulation_perception.confidence import FEWEST_TO_COMPARE, FLUSH, UNUSUAL_LENGTH
 from singulation_perception.face_blocks import FaceBlocks
 from singulation_perception.face_rings import face_rings
 from singulation_perception.found_block import FoundBlock
@@ -95,11 +95,11 @@ def _suspects(faces: Faces, chosen: IntArray, noise: float) -> list[Suspects]:
 
 def _with_size_doubts(blocks: list[FoundBlock], max_extent: float | None) -> list[FoundBlock]:
     """Doubts blocks that are so large that they may be several, flush along a whole edge."""
-    extents = [2.0 * block.radius for block in blocks]
-    if max_extent is None and len(blocks) >= FEWEST_TO_COMPARE:
-        max_extent = UNUSUAL_EXTENT * float(np.median(extents))
-    if max_extent is None:
+    if max_extent is not None:
+        large = [2.0 * block.radius > max_extent for block in blocks]
+    elif len(blocks) >= FEWEST_TO_COMPARE:
+        usual = float(np.median([block.length for block in blocks]))
+        large = [block.length > UNUSUAL_LENGTH * usual for block in blocks]
+    else:
         return blocks
-    return [
-        block.doubted(FLUSH) if extent > max_extent else block for block, extent in zip(blocks, extents, strict=True)
-    ]
+    return [block.doubted(FLUSH) if doubt else block for block, doubt in zip(blocks, large, strict=True)]

@@ -19,7 +19,7 @@ _USUAL_SUPPORT = 0.9  # share of the outline with points; corners never have the
 _USUAL_FILL = 0.8
 _DOUBT = 0.45  # each of them alone says: do not rely on this
 _CLEAR_LEAD = 0.008  # [m] by which the second best way to cut is dearer when there is no doubt
-UNUSUAL_EXTENT = 1.6  # times the median, from which a block may be two
+UNUSUAL_LENGTH = 1.5  # times the median, from which a block may be two
 FEWEST_TO_COMPARE = 4
 
 FLUSH, STACKED, CLIPPED, COMPLETED = 0.45, 0.3, 0.8, 0.9

@@ -1,5 +1,6 @@
 """A block as found, before doubts about its neighbours are settled."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -41,6 +42,11 @@ class FoundBlock:
         """Of the bounding circle about the area centroid [m]."""
         return bounding_radius(self.outline, self.centre)
 
+    @cached_property
+    def length(self) -> float:
+        """Longer side of the box around it, along one of its edges, whose longer side is shortest [m]."""
+        return float(longer_side(self.outline))
+
     def redrawn(self, outline: FloatArray, factor: float) -> "FoundBlock":
         """The same block with another outline and less confidence."""
         return replace(self, outline=outline, confidence=self.confidence * factor)
@@ -48,6 +54,21 @@ class FoundBlock:
     def doubted(self, factor: float) -> "FoundBlock":
         """The same block with less confidence."""
         return replace(self, confidence=self.confidence * factor)
+
+
+@compiled
+def longer_side(outline: FloatArray) -> float:
+    """Longer side of a box around an outline, along that of its edges for which it is shortest [m]."""
+    least = np.inf
+    for k in range(len(outline)):
+        ux, uy = outline[k, 0] - outline[k - 1, 0], outline[k, 1] - outline[k - 1, 1]
+        size = math.sqrt(ux * ux + uy * uy)
+        left, right, low, high = np.inf, -np.inf, np.inf, -np.inf
+        for i in range(len(outline)):
+            x, y = outline[i, 0] * ux + outline[i, 1] * uy, outline[i, 1] * ux - outline[i, 0] * uy
+            left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
+        least = min(least, max(right - left, high - low) / size)
+    return least
 
 
 def shares(point: IntArray, xyz: NDArray[np.float32], outlines: list[FloatArray]) -> tuple[IntArray, FloatArray]:

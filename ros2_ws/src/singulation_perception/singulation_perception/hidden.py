@@ -79,7 +79,7 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
         tall_enough = depth < reach * (level - height) + 2.0 * roughness
         if hidden and (tall_enough or covered > _COVERED * inside):
             keep[around[1:-1]] = False
-    return np.asarray(ring[keep & ~_scattered(keep)])
+    return ring if keep.all() else np.asarray(ring[keep & ~_scattered(keep)])
 
 
 def _scattered(keep: NDArray[np.bool_]) -> NDArray[np.bool_]:

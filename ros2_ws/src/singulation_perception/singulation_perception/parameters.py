@@ -26,7 +26,8 @@ class SegmentationParameters:
         max_height: highest top face; what reaches above (an arm) is dropped and counted.
         min_width: narrower objects are slivers, dropped and counted.
         max_extent: diameter of the bounding circle of the largest block there is; larger outlines are doubted, because
-            blocks flush along a whole edge leave no trace. None: one and a half times the median of the cloud.
+            blocks flush along a whole edge leave no trace. None: outlines are doubted that are one and a half times as
+            long as is usual in the cloud.
         outline_tolerance: of Douglas-Peucker. None: four point spacings.
         edge_growth: what the sensor loses at an edge, in point spacings, added on every side of an outline.
             A constant of the sensor; calibrate it with a block of known size.
