@@ -39,8 +39,8 @@ def prepare_for_large_messages() -> bool:
     # A process that has the profile from its parent needs room for itself, the first one for all that may follow.
     processes = 1 if chosen else _PROCESSES
     needed = processes * segment_size()
-    if shared_memory_free() < needed:
-        remove_abandoned_segments()
+    # Not only for their room: who opens a queue that was left behind gets it as small as it was made.
+    remove_abandoned()
     free = shared_memory_free()
     if free < needed:
         os.environ.pop(PROFILE_VARIABLE, None)
@@ -71,25 +71,36 @@ def shared_memory_free() -> int:
     return shutil.disk_usage(_SHARED_MEMORY).free if _SHARED_MEMORY.is_dir() else 0
 
 
-def remove_abandoned_segments() -> int:
-    """Free the shared memory of processes that were killed (as ``fastdds shm clean`` does); how many segments.
+def remove_abandoned() -> int:
+    """Remove the shared memory of processes that were killed (as ``fastdds shm clean`` does): segments and queues.
 
-    The owner of a segment holds a lock on the file beside it as long as it lives.
+    The owner of either holds a lock on the file beside it as long as it lives.
+
+    Returns:
+        How many were removed.
     """
     removed = 0
-    for lock in _SHARED_MEMORY.glob("fastrtps_*_el"):
-        segment = lock.with_name(lock.name.removesuffix("_el"))
-        try:
-            if time.time() - lock.stat().st_mtime < _YOUNG:
+    for memory in _SHARED_MEMORY.glob("fastrtps_*"):
+        if not memory.name.endswith("_el"):
+            try:
+                removed += _remove_if_abandoned(memory, memory.with_name(f"{memory.name}_el"))
+            except OSError:  # in use, not ours, or somebody else was faster
                 continue
-            with lock.open("rb") as file:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                segment.unlink(missing_ok=True)
-                lock.unlink()
-                removed += 1
-        except OSError:  # in use, not ours, or somebody else was faster
-            continue
     return removed
+
+
+def _remove_if_abandoned(memory: Path, lock: Path) -> bool:
+    locked = lock.exists()
+    if time.time() - (lock if locked else memory).stat().st_mtime < _YOUNG:
+        return False
+    if not locked:
+        memory.unlink()
+        return True
+    with lock.open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        memory.unlink()
+        lock.unlink()
+    return True
 
 
 def keep_memory() -> None:

@@ -2,19 +2,22 @@ import fcntl
 import os
 import subprocess
 import sys
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
 from singulation_node import large_messages
+from singulation_node.domain import reserved_domain
 from singulation_node.large_messages import (
     PROFILE,
     PROFILE_VARIABLE,
     prepare_for_large_messages,
-    remove_abandoned_segments,
+    remove_abandoned,
     segment_size,
 )
 
+SHARED_MEMORY = Path("/dev/shm")
 LARGEST_CLOUD = 2064 * 1544 * 16  # bytes: full PhoXi image with colours
 FRAGMENT = 65_000  # bytes, a little less than what a UDP packet holds
 
@@ -59,30 +62,27 @@ def test_a_child_needs_room_for_itself_only(plenty, monkeypatch):
     assert prepare_for_large_messages()
 
 
-def test_only_segments_whose_owner_is_gone_are_removed(tmp_path, monkeypatch):
+def test_only_what_has_no_owner_is_removed(tmp_path, monkeypatch):
     monkeypatch.setattr(large_messages, "_SHARED_MEMORY", tmp_path)
-    names = ("fastrtps_used", "fastrtps_left", "fastrtps_fresh")
-    for name in names:
-        (tmp_path / name).write_bytes(b"segment")
-        (tmp_path / f"{name}_el").touch()
-    for name in names[:2]:
-        os.utime(tmp_path / f"{name}_el", (1.0, 1.0))
+    for name in ("fastrtps_used", "fastrtps_left", "fastrtps_fresh", "fastrtps_port7661", "fastrtps_port7663"):
+        (tmp_path / name).write_bytes(b"memory")
+        if "port" not in name:  # such a queue was closed by its owner, but somebody else still had it open
+            (tmp_path / f"{name}_el").touch()
+    for name in ("fastrtps_used_el", "fastrtps_left_el", "fastrtps_port7661"):
+        os.utime(tmp_path / name, (1.0, 1.0))
     (tmp_path / "somebody_elses_file").touch()
     with (tmp_path / "fastrtps_used_el").open() as owner:
         fcntl.flock(owner, fcntl.LOCK_EX)
-        assert remove_abandoned_segments() == 1
-    left = {path.name for path in tmp_path.iterdir()}
-    assert "fastrtps_left" not in left
-    assert {"fastrtps_used", "fastrtps_fresh", "somebody_elses_file"} < left
+        assert remove_abandoned() == 2
+    left = {path.name for path in tmp_path.iterdir() if not path.name.endswith("_el")}
+    assert left == {"fastrtps_used", "fastrtps_fresh", "fastrtps_port7663", "somebody_elses_file"}
 
 
 def test_what_killed_processes_left_makes_room(plenty, monkeypatch):
-    rooms = iter((segment_size(), 6 * segment_size()))
     cleaned = []
-    monkeypatch.setattr(large_messages, "shared_memory_free", lambda: next(rooms))
-    monkeypatch.setattr(large_messages, "remove_abandoned_segments", lambda: cleaned.append(True))
+    monkeypatch.setattr(large_messages, "shared_memory_free", lambda: (6 if cleaned else 1) * segment_size())
+    monkeypatch.setattr(large_messages, "remove_abandoned", lambda: cleaned.append(True))
     assert prepare_for_large_messages()
-    assert cleaned
 
 
 def test_fast_dds_takes_the_profile():
@@ -101,3 +101,44 @@ rclpy.try_shutdown()
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
     assert int(done.stdout.split()[-1]) >= segment_size()
     assert "Error" not in done.stderr
+
+
+def test_small_queues_that_were_left_behind_are_made_anew():
+    """Whoever got such a queue lost a cloud each time it was slow."""
+    program = """
+import pathlib, rclpy, sys
+from singulation_node.large_messages import prepare_for_large_messages
+if sys.argv[1] == "prepared":
+    prepare_for_large_messages()
+rclpy.init()
+node = rclpy.create_node("probe")
+print("ready", flush=True)
+sys.stdin.readline()
+"""
+
+    def queues_beside(words):
+        before = set(SHARED_MEMORY.glob("fastrtps_port*"))
+        process = subprocess.Popen(
+            [sys.executable, "-c", program, words], env=environment, stdin=pipe, stdout=pipe, text=True
+        )
+        assert process.stdout.readline() == "ready\n"
+        made = {path: path.stat().st_size for path in set(SHARED_MEMORY.glob("fastrtps_port*")) - before}
+        return process, made
+
+    pipe = subprocess.PIPE
+    with reserved_domain() as domain:
+        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+        environment.pop(PROFILE_VARIABLE, None)
+        killed, small = queues_beside("as installed")
+        killed.kill()
+        killed.wait(timeout=30)
+        for path in small:
+            if path.name.endswith("_el"):  # so it is where the owner went, but a sender kept the queue
+                path.unlink()
+            else:
+                os.utime(path, (1.0, 1.0))
+        prepared, _ = queues_beside("prepared")
+        sizes = {path: path.stat().st_size for path in small if path.exists() and not path.name.endswith("_el")}
+        prepared.communicate("", timeout=30)
+    assert sizes
+    assert all(size > small[path] for path, size in sizes.items())
