@@ -137,7 +137,7 @@ def _overshoot(
     slope = (n * at - a * t) / spread
     corner = (t - slope * a) / n + slope * scale.growth
     begin = (ring[end, 0] - cx) * ux + (ring[end, 1] - cy) * uy
-    beyond = way * (corner - begin)
+    beyond = way * (corner - begin) - scale.pitch * math.sqrt(1.0 + slope * slope)  # points of a rim lie inside
     return beyond if scale.pitch < beyond < _STRAY * scale.pitch else 0.0
 
 

@@ -11,6 +11,7 @@ from ros2_ws.src.singulation_perception.test.table_top import PARAMETERS, box, c
 from singulation_core.polygon import signed_area
 from singulation_perception import segment, segment_cloud
 from singulation_perception.convex_overlap import shared_area
+from singulation_perception.found_block import longer_side
 
 
 def expect(seen, *blocks, doubt=0.0):
@@ -37,6 +38,17 @@ def pair(angle, offset, second_height=0.03):
 def test_touching_blocks_of_one_height_are_told_apart_by_their_corners(angle):
     blocks = pair(angle, 0.003)
     expect(segment(cloud(*blocks), PARAMETERS), *blocks)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.8, 2.0])
+def test_a_seam_with_a_corner_at_either_end_leaves_no_doubt(angle):
+    assert all(item.confidence > 0.9 for item in segment(cloud(*pair(angle, 0.004)), PARAMETERS).objects)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.8, 2.0])
+def test_blocks_that_are_flush_at_one_end_are_doubted_because_nothing_shows_where_their_seam_ends(angle):
+    seen = segment(cloud(*pair(angle, 0.010)), PARAMETERS)
+    assert all(item.confidence < 0.5 for item in seen.objects)
 
 
 @given(st.floats(0.0, 3.1), st.floats(-0.006, 0.006))
@@ -75,6 +87,13 @@ def test_two_blocks_without_any_trace_between_them_are_one_that_is_doubted():
     longest = max(seen.objects, key=lambda item: item.bounding_radius)
     assert longest.confidence < 0.5
     assert all(item.confidence > 0.8 for item in seen.objects if item is not longest)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.3])
+def test_a_square_is_as_long_as_its_side_and_a_right_triangle_as_its_longer_leg(angle):
+    square, triangle = box(0.0, 0.0, 0.04, 0.04), np.array(((0.0, 0.0), (0.06, 0.0), (0.0, 0.03)))
+    assert longer_side(turned(square, angle)) == pytest.approx(0.04)
+    assert longer_side(turned(triangle, angle)) == pytest.approx(0.06)
 
 
 def test_with_splitting_turned_off_a_merged_outline_is_one_object_that_is_doubted():
