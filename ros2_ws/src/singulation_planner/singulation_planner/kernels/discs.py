@@ -16,7 +16,6 @@ from singulation_planner.kernels.types import IntArray
 # The first block slides off those it meets, and is held up by them: shares of what it would push them aside and ahead.
 # Found by comparison with the push physics (scenes of ``benchmarks/rollout`` with seeds 3000 to 3003).
 _YIELD, _HELD = 0.3, 0.1
-_FRICTION = 0.5
 _LEAST = 1e-3  # of the way that a contact gives way; without a bound a block beside its contact would go anywhere
 _FLOOR = 0.05  # smallest distance that counts, in units of the scale, as in the singulation distance
 
@@ -48,7 +47,15 @@ def _in_the_way(
 
 @compiled_inline
 def _shift(
-    mx: float, my: float, nx: float, ny: float, rx: float, ry: float, gyration: float, depth: float
+    mx: float,
+    my: float,
+    nx: float,
+    ny: float,
+    rx: float,
+    ry: float,
+    gyration: float,
+    depth: float,
+    friction: float,
 ) -> tuple[float, float]:
     """Shift of a block that another one, going along (mx, my), pushes out of its way by ``depth`` along (nx, ny).
 
@@ -57,8 +64,8 @@ def _shift(
     lever = (rx * my - ry * mx) / (gyration + rx * rx + ry * ry)
     fx, fy = mx + ry * lever, my - rx * lever
     pressed, aside = fx * nx + fy * ny, fy * nx - fx * ny
-    if abs(aside) > _FRICTION * pressed:
-        side = _FRICTION if aside > 0.0 else -_FRICTION
+    if abs(aside) > friction * pressed:
+        side = friction if aside > 0.0 else -friction
         fx, fy = nx - side * ny, ny + side * nx
     spin = (rx * fy - ry * fx) / gyration
     yields = (fx - spin * ry) * nx + (fy + spin * rx) * ny
@@ -74,6 +81,7 @@ def _spread(
     planes: FloatArray,
     arms: FloatArray,
     gyrations: FloatArray,
+    friction: float,
     target: int,
     queue: IntArray,
     rank: IntArray,
@@ -85,6 +93,7 @@ def _spread(
         points: (n, 2) where the blocks are, the target already further on; written [m].
         before: (n, 2) where they were [m].
         contact, planes, arms, gyrations: of all pairs, and of all blocks.
+        friction: where blocks touch.
         target: the block that the pusher pushes.
         queue, rank: (n,) room to work in.
         moved: (n,) written: 1 where a block was pushed.
@@ -108,7 +117,7 @@ def _spread(
             if depth <= 0.0:
                 continue
             rx, ry = (arms[i, j, 0], arms[i, j, 1]) if flat else (0.0, 0.0)
-            x, y = _shift(mx, my, nx, ny, rx, ry, gyrations[j], depth)
+            x, y = _shift(mx, my, nx, ny, rx, ry, gyrations[j], depth, friction)
             points[j, 0], points[j, 1] = points[j, 0] + x, points[j, 1] + y
             moved[j] = 1.0
             if rank[j] < 0:
@@ -173,6 +182,7 @@ def disc_scores(
     scale: float,
     width: float,
     weights: FloatArray,
+    friction: float,
     scores: FloatArray,
 ) -> None:
     """Scores of m pushes.
@@ -188,6 +198,7 @@ def disc_scores(
         scale: mean bounding radius [m].
         width: gap beyond which nothing is gained [m].
         weights: of the change of the mean log distance and of the mean gap (both without unit).
+        friction: where blocks touch.
         scores: (m,), written.
     """
     n, floor = len(centroids), _FLOOR * scale
@@ -211,7 +222,7 @@ def disc_scores(
             after[target, 0] = centroids[target, 0] + paths[c, step, 0] + deflection[0]
             after[target, 1] = centroids[target, 1] + paths[c, step, 1] + deflection[1]
             _give_way(after, contact, planes, target, directions[c, 0], directions[c, 1], deflection)
-            _spread(after, last, contact, planes, arms, gyrations, target, queue, rank, moved)
+            _spread(after, last, contact, planes, arms, gyrations, friction, target, queue, rank, moved)
         scores[c] = weights[0] * log_change(after, inverse, moved, counted, floor)
         if weights[1] != 0.0:
             scores[c] += weights[1] * _clearance(centroids, after, gaps, moved, width)

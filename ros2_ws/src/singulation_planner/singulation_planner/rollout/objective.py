@@ -43,7 +43,7 @@ class Objective:
     gyrations: FloatArray
     counted: FloatArray
 
-    def scores(self, objects: IntArray, directions: FloatArray, paths: FloatArray) -> FloatArray:
+    def scores(self, objects: IntArray, directions: FloatArray, paths: FloatArray, friction: float) -> FloatArray:
         """(m,) values of pushes if blocks did not turn and the push objects (m,) went along ``paths`` (m, k, 2) [m]."""
         scores = np.empty(len(objects))
         scene = self.scene
@@ -60,6 +60,7 @@ class Objective:
             scene.scale,
             self.width,
             self.weights,
+            friction,
             scores,
         )
         return scores
