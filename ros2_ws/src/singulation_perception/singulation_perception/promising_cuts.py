@@ -3,10 +3,11 @@
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.cutting import both_pieces, estimated, left_concave, seam_line
+from singulation_perception.cutting import both_pieces, estimated, left_concave
 from singulation_perception.face_image import FaceImage
 from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.rings import Scale
+from singulation_perception.seam_lines import seam_line
 from singulation_perception.seams import candidates, edges_between, one_seam
 from singulation_perception.simplified import simplified
 from singulation_perception.traces import trace_strength
