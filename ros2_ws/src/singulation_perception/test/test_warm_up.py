@@ -12,7 +12,8 @@ import singulation_perception
 from numba.core.dispatcher import Dispatcher
 from singulation_perception.warming import STEPS
 
-INNER = ("_heights", "_take", "coordinates", "fitted_line")  # called by compiled functions only, but kept apart for their sums
+# Called by compiled functions only, but kept apart for their sums.
+INNER = ("_heights", "_take", "coordinates", "fitted_line")
 
 singulation_perception.warm_up()
 for step in STEPS:
