@@ -34,7 +34,7 @@ def rank(task: Task, options: Options) -> Iterator[Candidates]:
         ordered = task.scene.in_order()
         judge = Judge(task.placer, objective, _fast(task.physics), ordered, options.worlds, task.seed)
         limit = math.ceil(options.rollouts * task.share)
-        search = Search(task.placer, judge, limit, task.random(), deadline)
+        search = Search(task.placer, judge, limit, task.random, deadline)
         if options.worlds > 1:
             search = replace(search, final=judge.in_all_worlds, final_cost=options.worlds)
         elif options.look_ahead > 1:

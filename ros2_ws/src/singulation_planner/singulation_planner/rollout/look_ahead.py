@@ -1,6 +1,7 @@
 """Pushes judged by what can be reached after them."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class LookAhead:
         objective = replace(make_objective(scene, options), width=self.judge.objective.width)
         judge = Judge(following, objective, self.judge.physics, scene.in_order())
         ranked = by_score(following, objective)
-        random = np.random.default_rng(self.seed)
+        random = partial(np.random.default_rng, self.seed)
         search = Search(following, judge, NEXT, random, self.deadline)
         if options.look_ahead > 1:
             ahead = LookAhead(judge, options, self.seed, self.deadline)

@@ -36,7 +36,7 @@ class Search:
     Attributes:
         placer, judge: of the scene.
         limit: number of simulations.
-        random: for the variations.
+        random: makes the generator for the variations; a short search needs none.
         deadline: processor time of this thread [s].
         final: a more careful way to judge the best pushes; the answer is then the best of those. None: the judge's.
         final_cost: simulations that this takes for one push.
@@ -45,7 +45,7 @@ class Search:
     placer: Placer
     judge: Judge
     limit: int
-    random: np.random.Generator
+    random: Callable[[], np.random.Generator]
     deadline: float
     final: Callable[[Proposals], Outcomes] | None = None
     final_cost: int = 1
@@ -69,6 +69,7 @@ class Search:
 
     def _sequence(self, ranked: Proposals) -> Iterator[tuple[Proposals, Callable[[Proposals], None], int]]:
         """What would be tried without any limit: depends on what was found before, but not on the limits."""
+        random = None
         yield ranked.part(slice(1)), self._screen, 1
         for at in range(1, len(ranked), _SCREENED):
             for batch in self._batches(ranked.part(slice(at, at + _SCREENED))):
@@ -76,7 +77,8 @@ class Search:
             for step in range(_REFINEMENTS):
                 if self.nominal is not None:
                     around, count = self.nominal.proposal.candidates, _REFINED // _REFINEMENTS
-                    yield variations(self.placer, around, _NARROWER**step, count, self.random), self._screen, 1
+                    random = random or self.random()
+                    yield variations(self.placer, around, _NARROWER**step, count, random), self._screen, 1
 
     def _sequence_with_finals(self, ranked: Proposals) -> Iterator[tuple[Proposals, Callable[[Proposals], None], int]]:
         """The same where the best of those screened are judged again."""
