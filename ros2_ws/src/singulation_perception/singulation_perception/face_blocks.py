@@ -19,11 +19,12 @@ from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.outlines import Outlines, outlines_of
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.rings import Scale
-from singulation_perception.splitting import CONVEX, Split, Suspects, split, split_seen
+from singulation_perception.splitting import Split, Suspects, split, split_seen
 from singulation_perception.surfaces import Faces
 
 _TOLERANCE_IN_PITCHES = 4.0
 _BORDER = 2  # pixels and pitches
+_POCKET = 0.008  # [m] cost of a pocket from which on it is a doubt; the end of a shadow bites up to that much off a rim
 _BESIDE = 4.0  # pitches between a seam's middle and the rim of a piece beside it
 
 
@@ -169,7 +170,7 @@ class FaceBlocks:
             supported=outlines.supported,
             filled=np.where(whole, count / np.maximum(count + holes, 1), 1.0),
             flat=self.faces.flat[face],
-            concave=~whole & (outlines.concave * PER_AREA >= CONVEX),
+            concave=~whole & (outlines.concave * PER_AREA >= _POCKET),
             truncated=self._at_border(k, outlines.box),
             lead=np.array([piece.lead for piece in pieces]),
             loose=np.array([piece.loose for piece in pieces], dtype=bool),
