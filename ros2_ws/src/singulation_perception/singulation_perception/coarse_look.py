@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from singulation_perception.jit import compiled_sums
 from singulation_perception.raster import Raster
 
-X, Y, HEIGHT = 0, 1, 2
+X, Y, HEIGHT = np.int64(0), np.int64(1), np.int64(2)  # all of one kind, so that what takes them is compiled once
 BLOCK = 16  # columns that are looked at together
 _MOST = 6  # rows: more would hardly save any reading
 _SHARE = 0.5  # of the least width of a block between two rows that are looked at
@@ -72,7 +72,8 @@ def _mark(
     levels = np.empty(cloud.width, dtype=np.float32)
     nowhere = pose[2, 3]  # height of (0, 0, 0), which is no point
     for row in range(0, cloud.height, stride):
-        left, right = int(columns[row, 0]), int(columns[row, 1])
+        left: int = columns[row, 0] + np.int64(0)
+        right: int = columns[row, 1] + np.int64(0)
         coordinates(cloud, row, left, pose, HEIGHT, levels, right - left)
         for block in range(left // BLOCK, -(-right // BLOCK)):
             some = 0

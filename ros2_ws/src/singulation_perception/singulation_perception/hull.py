@@ -18,7 +18,8 @@ def hull_indices(ring: FloatArray) -> IntArray:
     point, spare = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
     stack = np.empty((size + 2, 4), dtype=np.int32)  # both ends of an edge, first and last of its points
     hull = np.empty(size, dtype=np.int32)
-    least, most = 0, 0
+    least = size - size  # no literal: what takes it is compiled once
+    most = least
     for i in range(size):
         point[i] = i
         if _before(ring, i, least):

@@ -95,7 +95,8 @@ def _collect(
     x, y = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.float32)
     height, kind = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.uint8)
     numbers = xyz.reshape(-1)
-    count, run, outside = 0, 0, 0
+    nothing: int = len(runs) - len(runs)  # no literal: what takes it is compiled once
+    count, run, outside = nothing, nothing, nothing
     for row in range(cloud.height):
         stop, right = np.int64(columns[row, 0]), np.int64(columns[row, 1])
         if count + right - stop > len(xyz) or run + right - stop > len(runs):
@@ -106,7 +107,7 @@ def _collect(
             coordinates(cloud, row, begin, pose, X, x, stop - begin)
             coordinates(cloud, row, begin, pose, Y, y, stop - begin)
             _classify(x, y, height, kind, stop - begin, limits, lowest, pose[2, 3], step)
-            i = 0
+            i = nothing
             while i < stop - begin:
                 if kind[i] == _LOW or kind[i] == _OUTSIDE:
                     outside += kind[i] == _OUTSIDE
