@@ -45,7 +45,7 @@ def reach_of_shadows(view: View, place: FloatArray, height: float) -> float:
         place: (2,) on the face [m].
         height: of the face [m].
     """
-    away = float(np.hypot(*(view.camera[:2] - place)))
+    away = math.hypot(float(view.camera[0] - place[0]), float(view.camera[1] - place[1]))
     return away / max(abs(float(view.camera[2]) - height), 1e-3) + _SHADOW
 
 

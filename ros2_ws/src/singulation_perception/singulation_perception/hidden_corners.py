@@ -37,7 +37,8 @@ def with_hidden_corners(blocks: list[FoundBlock], faces: FaceBlocks, step: float
         return blocks
     done = list(blocks)
     for lower, upper in near_pairs(blocks, step):
-        done[lower] = _completed(done[lower], blocks[upper], faces, step)
+        if len(done[lower].outline) > 3:
+            done[lower] = _completed(done[lower], blocks[upper], faces, step)
     return done
 
 

@@ -46,11 +46,11 @@ def near_pairs(blocks: list[FoundBlock], step: float) -> list[tuple[int, int]]:
     """Lower and higher block of all pairs of different height whose bounding circles meet."""
     if len(blocks) < 2:
         return []
-    centres = np.array([block.centre for block in blocks])
-    radii, heights = (np.array([getattr(block, name) for block in blocks]) for name in ("radius", "height"))
-    apart = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
-    near = (apart < radii[:, None] + radii[None]) & (heights[None] > heights[:, None] + step)
-    return [(int(i), int(j)) for i, j in np.argwhere(near)]
+    x, y = np.array([block.centre for block in blocks]).T
+    radius, height = np.array([block.radius for block in blocks]), np.array([block.height for block in blocks])
+    apart = np.hypot(x[:, np.newaxis] - x, y[:, np.newaxis] - y)
+    near = (apart < radius[:, np.newaxis] + radius) & (height > height[:, np.newaxis] + step)
+    return [(i, j) for i, j in np.argwhere(near).tolist()]
 
 
 def _overlap(lower: FoundBlock, upper: FoundBlock) -> bool:
