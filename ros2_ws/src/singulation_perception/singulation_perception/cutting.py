@@ -44,8 +44,8 @@ def piece(
     start = (ax - cx) * ux + (ay - cy) * uy
     stop = (bx - cx) * ux + (by - cy) * uy
     way = 1.0 if stop > start else -1.0
-    start += way * _overshoot(ring, last, -1, steps, (cx, cy, ux, uy), way, scale)
-    stop -= way * _overshoot(ring, first, 1, steps, (cx, cy, ux, uy), -way, scale)
+    start += way * _overshoot(ring, last, np.int64(-1), steps, (cx, cy, ux, uy), way, scale)
+    stop -= way * _overshoot(ring, first, np.int64(1), steps, (cx, cy, ux, uy), -way, scale)
     stray = _STRAY * scale.pitch
     seam = max(2, min(4 * size, int(abs(stop - start) / scale.pitch)))
     out = np.empty((steps + seam, 2))

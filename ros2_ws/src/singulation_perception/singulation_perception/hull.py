@@ -18,13 +18,12 @@ def hull_indices(ring: FloatArray) -> IntArray:
     point, spare = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
     stack = np.empty((size + 2, 4), dtype=np.int32)  # both ends of an edge, first and last of its points
     hull = np.empty(size, dtype=np.int32)
-    least = size - size  # no literal: what takes it is compiled once
-    most = least
+    least, most = 0, 0
     for i in range(size):
         point[i] = i
-        if _before(ring, i, least):
+        if _before(ring, np.int64(i), np.int64(least)):
             least = i
-        if _before(ring, most, i):
+        if _before(ring, np.int64(most), np.int64(i)):
             most = i
     count, depth = 0, np.int64(0)
     if size > 0 and least != most:

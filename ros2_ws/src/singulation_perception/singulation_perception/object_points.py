@@ -95,8 +95,7 @@ def _collect(
     x, y = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.float32)
     height, kind = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.uint8)
     numbers = xyz.reshape(-1)
-    nothing: int = len(runs) - len(runs)  # no literal: what takes it is compiled once
-    count, run, outside = nothing, nothing, nothing
+    count, run, outside = 0, 0, 0
     for row in range(cloud.height):
         stop, right = np.int64(columns[row, 0]), np.int64(columns[row, 1])
         if count + right - stop > len(xyz) or run + right - stop > len(runs):
@@ -107,16 +106,16 @@ def _collect(
             coordinates(cloud, row, begin, pose, X, x, stop - begin)
             coordinates(cloud, row, begin, pose, Y, y, stop - begin)
             _classify(x, y, height, kind, stop - begin, limits, lowest, pose[2, 3], step)
-            i = nothing
+            i = 0
             while i < stop - begin:
                 if kind[i] == _LOW or kind[i] == _OUTSIDE:
                     outside += kind[i] == _OUTSIDE
                     i += 1
                     continue
-                end = _end_of_run(kind, i, stop - begin)
+                end = _end_of_run(kind, np.int64(i), stop - begin)
                 runs[run, ROW], runs[run, FIRST] = row, count
                 runs[run, START], runs[run, STOP] = begin + i, begin + end
-                _take(x, y, height, i, end, numbers, count, spans, run)
+                _take(x, y, height, np.int64(i), end, numbers, np.int64(count), spans, np.int64(run))
                 run, count, i = run + 1, count + end - i, end
     return count, run, outside
 

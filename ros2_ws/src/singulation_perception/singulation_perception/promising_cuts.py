@@ -55,7 +55,7 @@ def promising_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: floa
         first, second = both_pieces(ring, i, j, line, scale)
         total = cost + left_concave(first, second, scale)
         if total < np.inf:
-            same = _same_seam(cuts, count, ring, i, j, scale.pitch)
+            same = _same_seam(cuts, np.int64(count), ring, i, j, scale.pitch)
             if same >= 0 and cuts[same, 0] <= total:
                 continue
             if same >= 0:
