@@ -30,7 +30,7 @@ def main() -> None:
         if after != before:
             path.write_text(after)
             mended += 1
-    print(f"mended {mended} exported CMake files of the ROS wheels")
+    print(f"{mended} build files of the ROS packages now point into this environment")
 
 
 if __name__ == "__main__":
