@@ -86,22 +86,8 @@ class FaceBlocks:
         """Distance of neighbouring points on face k [m]."""
         return float(self.rings.pitch[k])
 
-    def levels(self, k: int, places: FloatArray) -> NDArray[np.float32]:
-        """(m,) heights that the camera sees in the direction of (m, 2) places on face k or beside it [m].
-
-        NaN where it sees nothing.
-        """
-        cloud = self.view.cloud
-        if cloud is None:
-            return np.full(len(places), np.nan, dtype=np.float32)
-        rows, columns = np.clip(self._image(k).pixels(places), 0, (cloud.height - 1, cloud.width - 1)).T
-        first = rows.astype(np.int64) * cloud.row_step + columns * cloud.point_step
-        points = cloud.numbers[first[:, np.newaxis] + np.arange(3)]
-        points[~points.any(axis=1)] = np.nan
-        plane = self.view.plane.astype(np.float32)
-        return np.asarray(points @ plane[:3] + plane[3])
-
-    def _image(self, k: int) -> FaceImage:
+    def image(self, k: int) -> FaceImage:
+        """Face k as an image, with the map from the table into it."""
         pixels = self.rings.pixels[self.rings.begin[k] : self.rings.begin[k + 1]]
         return face_image(self.maps.image(k), self.maps.box[k, :2], self.seen.xyz, self.rings.ring(k), pixels)
 
@@ -144,7 +130,7 @@ class FaceBlocks:
         if not (concave or looking):
             yield _Piece(k, ring)
             return
-        image = self._image(k)
+        image = self.image(k)
         height = float(self.faces.height[self.maps.faces[k]])
         for part in split_seen(ring, scale, image, suspects) if looking else (ring,):
             if part is ring and not concave:

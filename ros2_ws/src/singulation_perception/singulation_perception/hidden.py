@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 from singulation_perception.raster import Raster
 from singulation_perception.rings import pockets
@@ -67,40 +67,62 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
     """
     if view.cloud is None:
         return ring
-    keep = np.ones(len(ring), dtype=bool)
     reach = reach_of_shadows(view, ring[0], height)
-    plane = view.plane.astype(np.float32)
-    for first, last, _, depth in pockets(ring, hull_indices(ring), roughness):
-        around = np.arange(int(first), int(last) + 1) % len(ring)
-        pocket = np.ascontiguousarray(pixels[around])
-        low, high = np.float32(height - roughness), np.float32(height + roughness)
-        lower, covered, taller, inside, near, level = _look(view.cloud, plane, pocket, low, high, _AROUND)
-        hidden = lower < _SEEN_LOWER * inside and taller > _TALLER * near
-        tall_enough = depth < reach * (level - height) + 2.0 * roughness
-        if hidden and (tall_enough or covered > _COVERED * inside):
-            keep[around[1:-1]] = False
-    return ring if keep.all() else np.asarray(ring[keep & ~_scattered(keep)])
-
-
-def _scattered(keep: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Points left over between hidden pockets, too few for a rim: the wall of what is taller has some at any height."""
-    begin = np.flatnonzero(keep & ~np.roll(keep, 1))
-    few = np.zeros_like(keep)
-    for first in begin.tolist():
-        run = (first + np.arange(_FEWEST)) % len(keep)
-        if not keep[run].all():
-            few[run] = True
-    return few
+    keep = _in_sight(ring, pixels, roughness, view.cloud, view.plane.astype(np.float32), height, reach)
+    return ring if keep.all() else np.asarray(ring[keep])
 
 
 @compiled
+def _in_sight(
+    ring: FloatArray,
+    pixels: IntArray,
+    roughness: float,
+    cloud: Raster,
+    plane: NDArray[np.float32],
+    height: float,
+    reach: float,
+) -> NDArray[np.bool_]:
+    """(m,) which points of a ring do not lie in a hidden pocket, or between two with hardly any others."""
+    keep = np.ones(len(ring), dtype=np.bool_)
+    low, high = np.float32(height - roughness), np.float32(height + roughness)
+    found = pockets(ring, hull_indices(ring), roughness)
+    for k in range(len(found)):
+        first, count, depth = np.int64(found[k, 0]), np.int64(found[k, 1] - found[k, 0]) + 1, found[k, 3]
+        pocket = np.empty((count, 2), dtype=np.int32)
+        for i in range(count):
+            at = (first + i) % len(ring)
+            pocket[i, 0], pocket[i, 1] = pixels[at, 0], pixels[at, 1]
+        lower, covered, taller, inside, near, level = _look(cloud, plane, pocket, low, high)
+        hidden = lower < _SEEN_LOWER * inside and taller > _TALLER * near
+        tall_enough = depth < reach * (level - height) + 2.0 * roughness
+        if hidden and (tall_enough or covered > _COVERED * inside):
+            for i in range(1, count - 1):
+                keep[(first + i) % len(ring)] = False
+    _drop_scattered(keep)
+    return keep
+
+
+@compiled_plain
+def _drop_scattered(keep: NDArray[np.bool_]) -> None:
+    """Points left over between hidden pockets, too few for a rim: the wall of what is taller has some at any height."""
+    size = len(keep)
+    for first in range(size):
+        if keep[first] and not keep[first - 1]:
+            count = 1
+            while count < _FEWEST and keep[(first + count) % size]:
+                count += 1
+            if count < _FEWEST:
+                for i in range(count):
+                    keep[(first + i) % size] = False
+
+
+@compiled_part
 def _look(
     cloud: Raster,
     plane: NDArray[np.float32],
     pocket: IntArray,
     low: np.float32,
     high: np.float32,
-    around: int,
 ) -> tuple[int, int, int, int, int, float]:
     """Points lower inside a pocket, taller inside, taller in and around it, pixels inside and around; mean height of
     the taller. Of large pockets every few rows are counted: only shares are asked for.
@@ -109,8 +131,8 @@ def _look(
     for i in range(len(pocket)):
         top, bottom = min(top, pocket[i, 0]), max(bottom, pocket[i, 0] + 1)
         left, right = min(left, pocket[i, 1]), max(right, pocket[i, 1] + 1)
-    top, bottom = max(0, top - around), min(cloud.height, bottom + around)
-    left, right = max(0, left - around), min(cloud.width, right + around)
+    top, bottom = max(0, top - _AROUND), min(cloud.height, bottom + _AROUND)
+    left, right = max(0, left - _AROUND), min(cloud.width, right + _AROUND)
     inside_row = np.empty(right - left + 1, dtype=np.int32)
     lower, covered, taller, inside, near, total = 0, 0, 0, 0, 0, 0.0
     for row in range(top, bottom, max(1, (bottom - top) // _ROWS)):

@@ -9,6 +9,7 @@ neighbours meet where nothing could be seen.
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.confidence import COMPLETED
@@ -16,7 +17,9 @@ from singulation_perception.face_blocks import FaceBlocks
 from singulation_perception.found_block import FoundBlock
 from singulation_perception.hidden import reach_of_shadows
 from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.object_points import IntArray
 from singulation_perception.piles import near_pairs
+from singulation_perception.raster import Raster
 
 _SEEN = 0.15  # share of a hidden corner that may be seen to be lower: flying points
 _SHARPEST = 0.15  # sine at a corner that is put back
@@ -52,10 +55,11 @@ def _completed(block: FoundBlock, upper: FoundBlock, faces: FaceBlocks, step: fl
         k, x, y = _shadowed_edge(outline, np.ascontiguousarray(upper.outline), reach, loose, k)
         if k < 0:
             return block.redrawn(outline, COMPLETED) if completed else block
-        turned = np.roll(outline, -k, axis=0)  # the edge comes first
-        k += 1
-        if _is_unseen(turned[0], turned[1], np.array((x, y)), block, faces, step):
-            outline, k, completed = np.vstack(((x, y), turned[2:])), 0, True
+        others = (k + 1 + np.arange(len(outline) - 1)) % len(outline)  # the end of the edge comes first
+        if _is_unseen(outline[k], outline[others[0]], np.array((x, y)), block, faces, step):
+            outline, k, completed = np.vstack(((x, y), outline[others[1:]])), 0, True
+        else:
+            k += 1
 
 
 @compiled
@@ -127,8 +131,44 @@ def _is_unseen(
     start: FloatArray, stop: FloatArray, corner: FloatArray, block: FoundBlock, faces: FaceBlocks, step: float
 ) -> bool:
     """Whether nothing lower than the block is seen between an edge of it and a corner beyond."""
-    steps = (np.arange(_STEPS) + 0.5) / _STEPS
-    up, along = (grid.reshape(-1, 1) for grid in np.meshgrid(steps, steps))
-    edge = start + along * (stop - start)
-    levels = faces.levels(block.face, edge + up * (corner - edge))
-    return bool(np.count_nonzero(levels < block.height - step) < _SEEN * len(levels))
+    image, plane = faces.image(block.face), faces.view.plane.astype(np.float32)
+    level = np.float32(block.height - step)
+    lower = _count_lower(faces.view.cloud, plane, image.to_pixel, image.corner, start, stop, corner, level)
+    return bool(lower < _SEEN * _STEPS * _STEPS)
+
+
+@compiled
+def _count_lower(
+    cloud: Raster,
+    plane: NDArray[np.float32],
+    to_pixel: FloatArray,
+    first: IntArray,
+    start: FloatArray,
+    stop: FloatArray,
+    corner: FloatArray,
+    level: np.float32,
+) -> int:
+    """At how many places of a lattice between an edge and a corner the camera sees something below ``level`` [m].
+
+    Args:
+        cloud: as the camera sees it.
+        plane: (4,) of the table in the camera frame.
+        to_pixel: (2, 3) from places to rows and columns from ``first`` on.
+        first: (2,) row and column in the cloud.
+        start, stop, corner: (2,) ends of the edge and the corner [m].
+        level: of the table frame [m].
+    """
+    count = 0
+    for i in range(_STEPS):
+        for j in range(_STEPS):
+            along, up = (i + 0.5) / _STEPS, (j + 0.5) / _STEPS
+            x, y = start[0] + along * (stop[0] - start[0]), start[1] + along * (stop[1] - start[1])
+            x, y = x + up * (corner[0] - x), y + up * (corner[1] - y)
+            row = math.floor(to_pixel[0, 0] * x + to_pixel[0, 1] * y + to_pixel[0, 2] + 0.5) + first[0]
+            column = math.floor(to_pixel[1, 0] * x + to_pixel[1, 1] * y + to_pixel[1, 2] + 0.5) + first[1]
+            row, column = min(max(row, 0), cloud.height - 1), min(max(column, 0), cloud.width - 1)
+            at = row * cloud.row_step + column * cloud.point_step
+            a, b, c = cloud.numbers[at], cloud.numbers[at + 1], cloud.numbers[at + 2]
+            there = a != 0.0 or b != 0.0 or c != 0.0
+            count += there and a * plane[0] + b * plane[1] + c * plane[2] + plane[3] < level
+    return count

@@ -10,7 +10,7 @@ Points = NDArray[np.float32]
 
 _MOST = 12  # levels of one surface
 _BINS = 8  # of the histogram in the window of a peak, which is half as wide as the range of a face
-_ENOUGH, _SPARSEST = 4_000, 4  # points of a surface that show its levels; at least every fourth run is looked at
+_ENOUGH, _SPARSEST = 2_000, 4  # points of a surface that show its levels; at least every fourth run is looked at
 _PARTS = 4  # histograms filled in turn: neighbours have one height, and a count must not wait for the one before
 _LAST_PART = _PARTS - 1
 _MASK = 6  # bins on either side of a peak in which there is no other
