@@ -133,12 +133,12 @@ def _is_unseen(
     """Whether nothing lower than the block is seen between an edge of it and a corner beyond."""
     image, plane = faces.image(block.face), faces.view.plane.astype(np.float32)
     level = np.float32(block.height - step)
-    lower = _count_lower(faces.view.cloud, plane, image.to_pixel, image.corner, start, stop, corner, level)
+    lower = count_lower(faces.view.cloud, plane, image.to_pixel, image.corner, start, stop, corner, level)
     return bool(lower < _SEEN * _STEPS * _STEPS)
 
 
 @compiled
-def _count_lower(
+def count_lower(
     cloud: Raster,
     plane: NDArray[np.float32],
     to_pixel: FloatArray,

@@ -3,11 +3,11 @@
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 
 
-@compiled
+@compiled_part
 def hull_indices(ring: FloatArray) -> IntArray:
     """Which points of a ring are corners of its convex hull, counter-clockwise (Quickhull; Barber et al. 1996).
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 
 
@@ -53,7 +53,7 @@ def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     return total
 
 
-@compiled
+@compiled_part
 def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
     """(p, 4) of the pockets between ring and hull that are deeper than ``roughness`` [m]: first and last point, area
     [m^2] and depth [m].

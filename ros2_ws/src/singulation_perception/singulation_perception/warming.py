@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage
+from singulation_perception.hidden_corners import count_lower
 from singulation_perception.outlines import outlines_of
+from singulation_perception.raster import raster_of
 from singulation_perception.rings import Scale
 from singulation_perception.segmentation import segment_cloud
 from singulation_perception.splitting import split
@@ -22,6 +24,7 @@ def warm_up() -> None:
     With empty caches this compiles for most of a minute; after that it takes about a second.
     """
     _see_image()
+    _look_beyond()
     _see_points()
 
 
@@ -43,12 +46,18 @@ def _cut() -> None:
     split(_ring_of_an_l(), _SCALE, image, 0.1 * _PITCH)
 
 
+def _look_beyond() -> None:
+    cloud, plane = raster_of(np.ones((2, 2, 3), dtype=np.float32)), np.zeros(4, dtype=np.float32)
+    place = np.zeros(2)
+    count_lower(cloud, plane, np.zeros((2, 3)), np.zeros(2, dtype=np.int32), place, place, place, np.float32(0.0))
+
+
 def _outline() -> None:
     outlines_of([_ring_of_an_l()], np.array([(4.0 * _PITCH, *_SCALE)]))
 
 
 # What helper processes begin with: the parts of the warm-up that take longest to compile and come last.
-STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _see_points)
+STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _look_beyond, _see_points)
 
 
 def _ring_of_an_l() -> FloatArray:
