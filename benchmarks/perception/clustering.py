@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from singulation_core import SingulationError
 from singulation_core.polygon import FloatArray
 from singulation_core.transforms import transform_points
+from singulation_node.large_messages import keep_memory
 from singulation_perception import segment_cloud
 from singulation_perception.cloud_files import read_cloud_file
 from singulation_perception.clustering import euclidean_clusters
@@ -30,6 +31,7 @@ _RATIOS = ["times ours: PCL", "PCL sorted", "Open3D", "as PCL", "as Open3D"]
 
 def run_clusters(count: int, rounds: int, pcl: PclRival, clouds: list[Path], resolutions: list[str]) -> list[Table]:
     """On synthetic scenes, and on the given cloud files."""
+    keep_memory()  # as every node of the suite does
     notes = [
         "Processor milliseconds, median over the rounds, smallest cluster 1 point. PCL: building the search tree and "
         "extracting, with an unsorted tree (the faster setting) and with the default, sorted one. Open3D: DBSCAN. "
