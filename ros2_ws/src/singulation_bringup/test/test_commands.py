@@ -47,11 +47,14 @@ class Eyes(Managed):
 
     def __init__(self, context, log, sees=True):
         super().__init__("perception_node", context, log)
-        self.sees = sees
+        self.sees, self.refuses = sees, False
         self.objects = self.create_publisher(Arrangement, "objects", STATE)
         self.create_service(Trigger, "trigger_frame", self.trigger)
 
     def trigger(self, request, response):
+        if self.refuses:
+            response.message = "the lens is capped"
+            return response
         if self.sees:
             self.objects.publish(Arrangement())
         else:
@@ -92,6 +95,19 @@ def test_a_wrong_table_keeps_the_robot_inactive_until_it_is_mended(ros_context):
         assert ("activate", "executor_node") not in log
         assert not nodes[-1].is_active
         nodes[0].sees = True
+        bring_up.bring_up(command, options("--check-camera"))
+        assert nodes[-1].is_active
+
+
+def test_a_camera_that_refuses_is_quoted_and_can_be_tried_again(ros_context):
+    nodes = cell(ros_context, [])
+    nodes[0].refuses = True
+    with spinning(*nodes), CommandNode("bring_up", context=ros_context) as command:
+        with pytest.raises(SingulationError, match="trigger_frame: the lens is capped") as caught:
+            bring_up.bring_up(command, options("--check-camera"))
+        assert caught.value.code is ResultCode.NO_FRESH_VIEW
+        assert not nodes[-1].is_active
+        nodes[0].refuses = False
         bring_up.bring_up(command, options("--check-camera"))
         assert nodes[-1].is_active
 

@@ -107,6 +107,27 @@ def test_ctrl_c_cancels_the_goal_before_the_command_ends(ros_context):
         pressed.join(timeout=10.0)
 
 
+def test_a_coordinator_that_falls_silent_is_told_to_stop(ros_context, monkeypatch):
+    monkeypatch.setattr(operate, "_PER_PUSH", 0.3)
+    cell = Cell(ros_context, endless=True)
+    with spinning(cell), CommandNode("operate", context=ros_context) as command:
+        with pytest.raises(SingulationError, match="the next push: nothing within") as caught:
+            operate.run(command, options("singulate"))
+        assert caught.value.code is ResultCode.TIMEOUT
+        assert cell.cancelled.is_set()
+        cell.endless = False
+        monkeypatch.undo()
+        assert operate.run(command, options("singulate")) == 0
+
+
+def test_what_has_to_end_in_order_is_waited_for_in_spite_of_ctrl_c_but_not_for_ever(ros_context):
+    with CommandNode("operate", context=ros_context) as command:
+        command.interrupt()
+        answers = iter((False, True))
+        assert command.settle(lambda: next(answers), 20.0)
+        assert not command.settle(lambda: False, 0.1)
+
+
 def test_services_are_asked_by_their_names(ros_context, capsys):
     cell = Cell(ros_context)
     with spinning(cell), CommandNode("operate", context=ros_context) as command:
@@ -129,7 +150,9 @@ def test_nobody_there_is_an_error_in_time(ros_context, what):
         assert time.monotonic() - began < 10.0
 
 
-@pytest.mark.parametrize("arguments", [(), ("dance",), ("--timeout", "soon", "halt")])
+@pytest.mark.parametrize(
+    "arguments", [(), ("dance",), ("--timeout", "soon", "halt"), ("singulate", "--policy", "wish")]
+)
 def test_a_command_line_that_makes_no_sense(arguments, capsys):
     with pytest.raises(SystemExit):
         operate.parse(arguments)

@@ -12,7 +12,6 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from singulation_msgs.msg import Arrangement
-from std_srvs.srv import Trigger
 
 from singulation_bringup.commands.command_node import CommandNode
 from singulation_bringup.commands.lifecycle import Lifecycle
@@ -51,11 +50,8 @@ def _check_camera(command: CommandNode, lifecycle: Lifecycle, seen: list[Any], o
         SingulationError: ``NO_FRESH_VIEW`` with what perception says of the cloud.
     """
     if options.trigger:
-        answer = command.call(
-            Trigger, options.trigger, Trigger.Request(), ready=options.timeout, answer=options.view_timeout
-        )
-        if not answer.success:
-            raise SingulationError(ResultCode.NO_FRESH_VIEW, f"the camera did not trigger: {answer.message}")
+        waits = {"ready": options.timeout, "answer": options.view_timeout}
+        command.trigger(options.trigger, **waits, refusal=ResultCode.NO_FRESH_VIEW)
     command.wait(lambda: seen or _rejection(lifecycle), options.view_timeout, "a cloud on points")
     if not seen:
         raise SingulationError(

@@ -8,10 +8,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 from sensor_msgs.msg import PointCloud2
-from std_srvs.srv import Trigger
 
 from singulation_bringup.commands.command_node import CommandNode
-from singulation_core import ResultCode, SingulationError
+from singulation_core import ResultCode
 from singulation_node.large_messages import prepare_for_large_messages
 from singulation_node.qos import SENSOR_IN
 from singulation_perception.cloud_messages import points_from_msg
@@ -48,7 +47,7 @@ def live_clouds(arguments: Sequence[str], trigger: str, count: int, timeout: flo
         while len(messages) < count:
             wanted = len(messages) + 1
             if trigger:
-                _trigger(command, trigger, timeout)
+                command.trigger(trigger, ready=timeout, answer=timeout, refusal=ResultCode.NO_FRESH_VIEW)
             command.wait(partial(_has, messages, wanted), timeout, f"cloud {wanted} on points")
             print(f"cloud {wanted} of {count}", flush=True)
     return [points_from_msg(message).copy() for message in messages[:count]]
@@ -56,9 +55,3 @@ def live_clouds(arguments: Sequence[str], trigger: str, count: int, timeout: flo
 
 def _has(messages: list[Any], count: int) -> bool:
     return len(messages) >= count
-
-
-def _trigger(command: CommandNode, name: str, timeout: float) -> None:
-    answer = command.call(Trigger, name, Trigger.Request(), ready=timeout, answer=timeout)
-    if not answer.success:
-        raise SingulationError(ResultCode.NO_FRESH_VIEW, f"the camera did not trigger: {answer.message}")

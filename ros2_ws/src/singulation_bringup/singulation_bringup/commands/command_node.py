@@ -11,6 +11,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
+from std_srvs.srv import Trigger
 
 from singulation_core import ResultCode, SingulationError
 from singulation_node.guard import report_failure
@@ -131,3 +132,20 @@ class CommandNode:
         future = client.call_async(request)
         self.wait(future.done, answer, f"answer of {client.srv_name}")
         return future.result()
+
+    def trigger(self, name: str, *, ready: float, answer: float, refusal: ResultCode = ResultCode.REJECTED) -> str:
+        """What a service of std_srvs/Trigger answers.
+
+        Args:
+            name: of the service.
+            ready: longest wait for the service [s].
+            answer: longest wait for its answer [s].
+            refusal: code of the error if it says that it did not work.
+
+        Raises:
+            SingulationError: ``TIMEOUT``, ``CANCELLED`` or ``refusal``.
+        """
+        response = self.call(Trigger, name, Trigger.Request(), ready=ready, answer=answer)
+        if not response.success:
+            raise SingulationError(refusal, f"{name}: {response.message}")
+        return str(response.message)

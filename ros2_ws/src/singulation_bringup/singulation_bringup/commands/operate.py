@@ -14,7 +14,6 @@ from typing import Any
 
 from rclpy.action import ActionClient
 from singulation_msgs.action import Singulate
-from std_srvs.srv import Trigger
 
 from singulation_bringup.commands.command_node import CommandNode
 from singulation_bringup.commands.status import outcome_text
@@ -26,18 +25,6 @@ _SERVICES = ("halt", "trigger_frame", "reset")
 _PER_PUSH = 120.0  # s, longest wait for the next push; the coordinator has its own, shorter ones
 _ACCEPT = 5.0  # s, for a goal to be accepted that Ctrl-C overtook
 _STOP = 30.0  # s, for the robot to stand after Ctrl-C
-
-
-def ask(command: CommandNode, name: str, timeout: float) -> str:
-    """What a service answers.
-
-    Raises:
-        SingulationError: ``TIMEOUT``; ``REJECTED`` if it says that it did not work.
-    """
-    answer = command.call(Trigger, name, Trigger.Request(), ready=timeout, answer=timeout)
-    if not answer.success:
-        raise SingulationError(ResultCode.REJECTED, f"{name}: {answer.message}")
-    return f"{name}: {answer.message or 'done'}"
 
 
 def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
@@ -130,7 +117,8 @@ def run(command: CommandNode, options: argparse.Namespace) -> int:
         SingulationError: why it did not work.
     """
     if options.what != "singulate":
-        print(ask(command, options.what, options.timeout))
+        said = command.trigger(options.what, ready=options.timeout, answer=options.timeout)
+        print(f"{options.what}: {said or 'done'}")
         return 0
     result = singulate(command, goal_of(options), options.timeout)
     print(result_text(result))

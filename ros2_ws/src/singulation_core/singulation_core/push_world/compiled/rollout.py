@@ -120,8 +120,7 @@ def _roll_out(
     back = _moved_back(shapes, state, numbers)
     if back < 0.0:
         return BLOCKED
-    n, left, found, settling = len(shapes.radii) - 1, length + back, 1, numbers.settle_steps
-    found = 0
+    n, left, found, settling = len(shapes.radii) - 1, length + back, 0, numbers.settle_steps
     while left > _ARRIVED or settling > 0:
         gap = _nearest(shapes, state) if found == 0 else 0.0
         if left > _ARRIVED and gap > 1.5 * numbers.step:  # nothing to push yet: jump
