@@ -81,10 +81,17 @@ class PclRival:
         self._ask(f"load {path}")
 
     def pipeline(
-        self, leaf: float, tolerance: float, min_size: int, workspace: tuple[float, ...], pose: FloatArray
+        self,
+        leaf: float,
+        tolerance: float,
+        min_size: int,
+        workspace: tuple[float, ...],
+        pose: FloatArray,
+        *,
+        pass_through: bool = False,
     ) -> tuple[float, float, list[FloatArray]]:
         """Processor and wall milliseconds, and outlines (k, 2) in ``table`` [m]; see ``pcl/pipeline.hpp``."""
-        words = (leaf, tolerance, min_size, *workspace, *pose[:3].ravel())
+        words = (leaf, tolerance, min_size, int(pass_through), *workspace, *pose[:3].ravel())
         numbers = [float(word) for word in self._ask("pipeline " + " ".join(map(str, words))).split()]
         outlines, place = [], 4
         for _ in range(int(numbers[3])):

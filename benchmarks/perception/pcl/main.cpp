@@ -1,6 +1,6 @@
 // A rival that is asked line by line on its standard input, so that both sides take turns on the same machine:
 //   load POINTS                    float32 x y z of every point from a file, invalid ones as NaN
-//   pipeline LEAF TOLERANCE MIN X_MIN X_MAX Y_MIN Y_MAX M00 .. M23 (table_from_camera, by rows)
+//   pipeline LEAF TOLERANCE MIN PASS_THROUGH X_MIN X_MAX Y_MIN Y_MAX M00 .. M23 (table_from_camera, by rows)
 //   clusters TOLERANCE SORTED OUT  labels as int32 into a file
 // Each answer is one line: processor milliseconds of this thread, wall milliseconds, then what was found.
 #include <time.h>
@@ -48,12 +48,12 @@ Cloud::Ptr loaded(const std::string& path) {
 
 Recipe recipe_from(std::istream& words) {
   Recipe recipe;
-  words >> recipe.leaf >> recipe.tolerance >> recipe.min_size;
+  words >> recipe.leaf >> recipe.tolerance >> recipe.min_size >> recipe.pass_through;
   for (auto& limit : recipe.workspace) words >> limit;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) words >> recipe.table_from_camera(row, column);
   }
-  if (!words) throw std::runtime_error("pipeline: need 19 numbers");
+  if (!words) throw std::runtime_error("pipeline: need 20 numbers");
   return recipe;
 }
 

@@ -5,6 +5,7 @@
 #include <pcl/common/eigen.h>  // before polygon_operations.h, which lacks it
 #include <pcl/filters/crop_box.h>
 #include <pcl/filters/extract_indices.h>
+#include <pcl/filters/passthrough.h>
 #include <pcl/filters/project_inliers.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/geometry/polygon_operations.h>
@@ -20,8 +21,33 @@ constexpr double kPlaneDistance = 0.003;
 constexpr int kPlaneIterations = 100;
 constexpr float kPolygonTolerance = 0.003F;
 
-// One pass over the cloud where three PassThrough filters would need three; drops invalid points too.
-Cloud::Ptr cropped(const Cloud::Ptr& cloud, const Recipe& recipe) {
+Cloud::Ptr between(const Cloud::Ptr& cloud, const std::string& axis, float low, float high) {
+  pcl::PassThrough<pcl::PointXYZ> filter;
+  filter.setInputCloud(cloud);
+  filter.setFilterFieldName(axis);
+  filter.setFilterLimits(low, high);
+  auto kept = pcl::make_shared<Cloud>();
+  filter.filter(*kept);
+  return kept;
+}
+
+// Along the axes of the camera, around the slice of the workspace: a little more than CropBox keeps.
+Cloud::Ptr passed_through(const Cloud::Ptr& cloud, const Recipe& recipe) {
+  const auto& [x_min, x_max, y_min, y_max] = recipe.workspace;
+  const Eigen::Affine3f camera_from_table = recipe.table_from_camera.inverse();
+  Eigen::AlignedBox3f box;
+  for (const double x : {x_min, x_max}) {
+    for (const double y : {y_min, y_max}) {
+      for (const double z : {kBelow, kAbove}) box.extend(camera_from_table * Eigen::Vector3d(x, y, z).cast<float>());
+    }
+  }
+  const auto in_x = between(cloud, "x", box.min().x(), box.max().x());
+  const auto in_y = between(in_x, "y", box.min().y(), box.max().y());
+  return between(in_y, "z", box.min().z(), box.max().z());
+}
+
+// One pass over the cloud where three PassThrough filters need three; drops invalid points too.
+Cloud::Ptr boxed(const Cloud::Ptr& cloud, const Recipe& recipe) {
   const auto& [x_min, x_max, y_min, y_max] = recipe.workspace;
   pcl::CropBox<pcl::PointXYZ> box;
   box.setInputCloud(cloud);
@@ -104,7 +130,7 @@ Cloud polygon(const Cloud::Ptr& cloud, const pcl::PointIndices& cluster, const p
 }  // namespace
 
 Outlines outlines(const Cloud::Ptr& cloud, const Recipe& recipe) {
-  const auto near = thinned(cropped(cloud, recipe), recipe.leaf);
+  const auto near = thinned(recipe.pass_through ? passed_through(cloud, recipe) : boxed(cloud, recipe), recipe.leaf);
   auto on_table = pcl::make_shared<pcl::PointIndices>();
   const auto plane = table_plane(near, on_table);
   const auto above = without(near, on_table);

@@ -17,6 +17,7 @@ struct Recipe {
   double leaf = 0.0;              // of the voxel grid, 0 for none
   double tolerance = 0.005;       // of the clustering
   int min_size = 100;             // of a cluster, in points
+  bool pass_through = false;      // crop with three PassThrough filters as the tutorials do, else with one CropBox
   std::array<double, 4> workspace{};  // x_min, x_max, y_min, y_max in the frame of the table
   Eigen::Affine3f table_from_camera = Eigen::Affine3f::Identity();
 };

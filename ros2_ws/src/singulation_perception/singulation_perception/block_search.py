@@ -1,6 +1,7 @@
 """From surfaces to blocks."""
 
 from dataclasses import dataclass
+from statistics import median
 
 import numpy as np
 
@@ -84,22 +85,26 @@ def _dropped(faces: Faces, surfaces: Surfaces, parameters: SegmentationParameter
     }
 
 
-def _suspects(faces: Faces, chosen: IntArray, noise: float) -> list[Suspects]:
-    """Faces that miss more points, or scatter more, than the others."""
+def _suspects(faces: Faces, chosen: IntArray, noise: float) -> dict[int, Suspects]:
+    """Those of the chosen faces that miss more points, or scatter more, than the others."""
+    if len(chosen) == 0:
+        return {}
     count, holes = faces.count[chosen], faces.holes[chosen]
-    usual = np.median(holes / np.maximum(count, 1)) * count if len(chosen) else count
+    usual = median((holes / np.maximum(count, 1)).tolist()) * count
     grooved = holes - usual - 3.0 * np.sqrt(usual) > _GROOVE * np.sqrt(count)
     uneven = faces.scatter[chosen] > _UNEVEN * noise
-    return [Suspects(bool(groove), bool(step), noise) for groove, step in zip(grooved, uneven, strict=True)]
+    return {
+        k: Suspects(bool(grooved[k]), bool(uneven[k]), noise) for k in np.flatnonzero(grooved | uneven).tolist()
+    }
 
 
 def _with_size_doubts(blocks: list[FoundBlock], max_extent: float | None) -> list[FoundBlock]:
     """Doubts blocks that are so large that they may be several, flush along a whole edge."""
     if max_extent is not None:
-        large = [2.0 * block.radius > max_extent for block in blocks]
+        large = [2.0 * block.shape.radius > max_extent for block in blocks]
     elif len(blocks) >= FEWEST_TO_COMPARE:
-        usual = float(np.median([block.length for block in blocks]))
-        large = [block.length > UNUSUAL_LENGTH * usual for block in blocks]
+        usual = median(block.shape.length for block in blocks)
+        large = [block.shape.length > UNUSUAL_LENGTH * usual for block in blocks]
     else:
         return blocks
     return [block.doubted(FLUSH) if doubt else block for block, doubt in zip(blocks, large, strict=True)]

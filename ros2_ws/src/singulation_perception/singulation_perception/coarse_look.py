@@ -9,7 +9,7 @@ with the stride chosen here it is narrower than the narrowest block, which is dr
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled_sums
+from singulation_perception.jit import compiled_part_sums, compiled_sums
 from singulation_perception.raster import Raster
 
 X, Y, HEIGHT = np.int64(0), np.int64(1), np.int64(2)  # all of one kind, so that what takes them is compiled once
@@ -83,7 +83,7 @@ def _mark(
                 marks[row // stride + 1, block + 1] = 1
 
 
-@compiled_sums
+@compiled_part_sums
 def coordinates(
     cloud: Raster, row: int, first: int, pose: NDArray[np.float32], axis: int, values: Values, count: int
 ) -> None:

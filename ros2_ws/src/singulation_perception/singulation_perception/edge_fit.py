@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part, compiled_sums
+from singulation_perception.jit import compiled_part, compiled_part_sums
 from singulation_perception.object_points import IntArray
 
 _INSIDE_WEIGHT = 0.1
@@ -21,7 +21,7 @@ _FEWEST = 5  # points of an edge that is fitted
 _PARALLEL = 0.05  # sine below which two edges have no corner
 
 
-@compiled_sums
+@compiled_part_sums
 def fitted_line(points: FloatArray, count: int, normal_x: float, normal_y: float) -> tuple[float, float, float]:
     """Outward unit normal and offset of the line along the outer limit of the first ``count`` points.
 

@@ -1,6 +1,5 @@
 """From one face to the blocks in it: seams that are seen, hidden parts, cuts that the outline suggests, outlines."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -62,22 +61,22 @@ class FaceBlocks:
     parameters: SegmentationParameters
     noise: float
 
-    def found(self, suspects: list[Suspects], dropped: dict[str, int]) -> list[FoundBlock]:
+    def found(self, suspects: dict[int, Suspects], dropped: dict[str, int]) -> list[FoundBlock]:
         """Blocks of all faces; counts what is none in ``dropped``.
 
         Args:
-            suspects: what to look for in each face.
+            suspects: what to look for in some faces.
             dropped: by reason.
         """
         slivers = self._slivers()
         dropped["sliver"] += sum(slivers)
-        pieces = [piece for k, sliver in enumerate(slivers) if not sliver for piece in self._pieces(k, suspects[k])]
+        pieces = [piece for k, sliver in enumerate(slivers) if not sliver for piece in self._pieces(k, suspects.get(k))]
         face = np.array([piece.face for piece in pieces], dtype=np.int32)
         outlines = outlines_of([piece.ring for piece in pieces], self._measures()[face])
         confidence = self._evidence(face, pieces, outlines).confidence.tolist()
         found: list[FoundBlock] = []
         for k, members in groupby(range(len(pieces)), lambda i: pieces[i].face):
-            blocks = self._blocks(k, [(outlines.outline(i), confidence[i]) for i in members])
+            blocks = self._blocks(k, [i for i in members if outlines.is_polygon(i)], outlines, confidence)
             dropped["shapeless"] += not blocks
             found += blocks
         return found
@@ -109,36 +108,36 @@ class FaceBlocks:
         measures[:, 1], measures[:, 2], measures[:, 3] = pitch, self.parameters.edge_growth * pitch, roughness
         return measures
 
-    def _blocks(self, k: int, members: list[tuple[FloatArray | None, float]]) -> list[FoundBlock]:
-        """Blocks of face k from their outlines and confidences; none if its rim gives no polygon."""
-        good = [(outline, confidence) for outline, confidence in members if outline is not None]
-        if not good:
+    def _blocks(self, k: int, members: list[int], outlines: Outlines, confidence: list[float]) -> list[FoundBlock]:
+        """Blocks of face k, whose outlines are the ``members`` among all; none if its rim gives no polygon."""
+        if not members:
             return []
-        counts, heights = self._shares(k, [outline for outline, _ in good])
+        drawn = [outlines.outline(i) for i in members]
+        counts, heights = self._shares(k, drawn)
         surface = int(self.faces.surface[self.maps.faces[k]])
         return [
-            FoundBlock(outline, height, count, confidence, surface, k)
-            for (outline, confidence), count, height in zip(good, counts, heights, strict=True)
+            FoundBlock(outline, outlines.shape(i), height, count, confidence[i], surface, k)
+            for i, outline, count, height in zip(members, drawn, counts, heights, strict=True)
         ]
 
-    def _pieces(self, k: int, suspects: Suspects) -> Iterator[_Piece]:
+    def _pieces(self, k: int, suspects: Suspects | None) -> list[_Piece]:
         """The parts of one face that may be blocks."""
-        ring, scale = self.rings.ring(k), self._scale(k)
-        cutting = self.parameters.split_touching
+        ring, cutting = self.rings.ring(k), self.parameters.split_touching
         concave = bool(self.rings.concave[k] > 0.0)
-        looking = cutting and (suspects.groove or suspects.step)
-        if not (concave or looking):
-            yield _Piece(k, ring)
-            return
-        image = self.image(k)
+        looking = suspects if cutting else None
+        if not concave and looking is None:
+            return [_Piece(k, ring)]
+        scale, image = self._scale(k), self.image(k)
         height = float(self.faces.height[self.maps.faces[k]])
-        for part in split_seen(ring, scale, image, suspects) if looking else (ring,):
+        pieces: list[_Piece] = []
+        for part in (ring,) if looking is None else split_seen(ring, scale, image, looking):
             if part is ring and not concave:
-                yield _Piece(k, ring)
+                pieces.append(_Piece(k, ring))
                 continue
             whole = without_hidden(part, image.pixels(part), scale.roughness, self.view, height)
             result = split(whole, scale, image, self.noise) if cutting else Split(0.0, (whole,))
-            yield from (_Piece(k, piece, *_doubts(piece, result, scale)) for piece in result.pieces)
+            pieces += [_Piece(k, piece, *_doubts(piece, result, scale)) for piece in result.pieces]
+        return pieces
 
     def _shares(self, k: int, outlines: list[FloatArray]) -> tuple[list[int], list[float]]:
         face = self.maps.faces[k]

@@ -1,15 +1,14 @@
 """A block as found, before doubts about its neighbours are settled."""
 
-import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_core.polygon import FloatArray, area_centroid, bounding_radius, inward_half_planes
+from singulation_core.polygon import FloatArray, inward_half_planes
 from singulation_perception.jit import compiled, compiled_plain
 from singulation_perception.object_points import IntArray
+from singulation_perception.shapes import Shape, shape_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +17,7 @@ class FoundBlock:
 
     Args:
         outline: (k, 2) convex, counter-clockwise [m].
+        shape: of the outline.
         height: of its top face [m].
         count: points of its top face.
         confidence: 0..1.
@@ -26,49 +26,20 @@ class FoundBlock:
     """
 
     outline: FloatArray
+    shape: Shape
     height: float
     count: int
     confidence: float
     surface: int
     face: int
 
-    @cached_property
-    def centre(self) -> FloatArray:
-        """(2,) area centroid [m]."""
-        return area_centroid(self.outline)
-
-    @cached_property
-    def radius(self) -> float:
-        """Of the bounding circle about the area centroid [m]."""
-        return bounding_radius(self.outline, self.centre)
-
-    @cached_property
-    def length(self) -> float:
-        """Longer side of the box around it, along one of its edges, whose longer side is shortest [m]."""
-        return float(longer_side(self.outline))
-
     def redrawn(self, outline: FloatArray, factor: float) -> "FoundBlock":
         """The same block with another outline and less confidence."""
-        return replace(self, outline=outline, confidence=self.confidence * factor)
+        return replace(self, outline=outline, shape=shape_of(outline), confidence=self.confidence * factor)
 
     def doubted(self, factor: float) -> "FoundBlock":
         """The same block with less confidence."""
         return replace(self, confidence=self.confidence * factor)
-
-
-@compiled
-def longer_side(outline: FloatArray) -> float:
-    """Longer side of a box around an outline, along that of its edges for which it is shortest [m]."""
-    least = np.inf
-    for k in range(len(outline)):
-        ux, uy = outline[k, 0] - outline[k - 1, 0], outline[k, 1] - outline[k - 1, 1]
-        size = math.sqrt(ux * ux + uy * uy)
-        left, right, low, high = np.inf, -np.inf, np.inf, -np.inf
-        for i in range(len(outline)):
-            x, y = outline[i, 0] * ux + outline[i, 1] * uy, outline[i, 1] * ux - outline[i, 0] * uy
-            left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
-        least = min(least, max(right - left, high - low) / size)
-    return least
 
 
 def shares(point: IntArray, xyz: NDArray[np.float32], outlines: list[FloatArray]) -> tuple[IntArray, FloatArray]:

@@ -37,15 +37,16 @@ class View:
     cloud: Raster | None
 
 
-def reach_of_shadows(view: View, place: FloatArray, height: float) -> float:
+def reach_of_shadows(view: View, x: float, y: float, height: float) -> float:
     """Length of what something hides from the camera or the projector, in its height above a face.
 
     Args:
         view: of the camera.
-        place: (2,) on the face [m].
+        x: of a place on the face [m].
+        y: of the same [m].
         height: of the face [m].
     """
-    away = math.hypot(float(view.camera[0] - place[0]), float(view.camera[1] - place[1]))
+    away = math.hypot(float(view.camera[0]) - x, float(view.camera[1]) - y)
     return away / max(abs(float(view.camera[2]) - height), 1e-3) + _SHADOW
 
 
@@ -67,7 +68,7 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
     """
     if view.cloud is None:
         return ring
-    reach = reach_of_shadows(view, ring[0], height)
+    reach = reach_of_shadows(view, float(ring[0, 0]), float(ring[0, 1]), height)
     keep = _in_sight(ring, pixels, roughness, view.cloud, view.plane.astype(np.float32), height, reach)
     return ring if keep.all() else np.asarray(ring[keep])
 

@@ -12,6 +12,8 @@ from numba import njit
 
 from singulation_core.jit import USUAL, kept
 
+_ANY_ORDER = {"reassoc", "contract"}
+
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function that Python calls; kept on disk."""
@@ -20,7 +22,12 @@ def compiled(function: Callable[..., Any]) -> Any:
 
 def compiled_sums(function: Callable[..., Any]) -> Any:
     """As ``compiled``, where sums may be added up in any order: that makes vector instructions of them."""
-    return kept(njit(**USUAL, fastmath={"reassoc", "contract"})(function))
+    return kept(njit(**USUAL, fastmath=_ANY_ORDER)(function))
+
+
+def compiled_part_sums(function: Callable[..., Any]) -> Any:
+    """As ``compiled_sums``, for a function that only compiled functions call; kept on disk as part of them."""
+    return njit(**USUAL, fastmath=_ANY_ORDER, no_cpython_wrapper=True)(function)
 
 
 def compiled_part(function: Callable[..., Any]) -> Any:

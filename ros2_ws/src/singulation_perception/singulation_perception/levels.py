@@ -24,10 +24,10 @@ def levels_of(
     runs: IntArray,
     surface: IntArray,
     sizes: IntArray,
+    tops: NDArray[np.float32],
     wanted: NDArray[np.bool_],
     band: float,
     apart: float,
-    highest: float,
     min_size: int,
 ) -> tuple[IntArray, NDArray[np.float64]]:
     """Levels of every wanted surface.
@@ -37,10 +37,10 @@ def levels_of(
         runs: (m, 4) runs of them.
         surface: (m,) surface of each run.
         sizes: (s,) points of each surface.
+        tops: (s,) highest point of each [m].
         wanted: (s,) which surfaces to look at.
         band: half the height range of a face [m].
         apart: levels closer than this cannot be told apart point by point and become one [m].
-        highest: of all wanted points [m].
         min_size: fewest points of a level.
 
     Returns:
@@ -49,15 +49,19 @@ def levels_of(
     """
     order, begin = _runs_by_surface(surface, len(sizes))
     width = band / _BINS
-    bins = int(highest / width) + 2
-    parts = np.zeros(_PARTS * bins, dtype=np.int32)
-    histogram = parts[:bins]
     per_width = 1.0 / width
+    highest = 0.0
+    for one in range(len(sizes)):
+        if wanted[one]:
+            highest = max(highest, np.float64(tops[one]))
+    room = np.empty(_PARTS * (int(highest * per_width) + 2), dtype=np.int32)
     first = np.zeros(len(sizes) + 1, dtype=np.int32)
     levels = np.empty((_MOST * len(sizes) + 1, 2), dtype=np.float64)
     count = 0
     for one in range(len(sizes)):
         if wanted[one]:
+            bins = int(tops[one] * per_width) + 2
+            parts = room[: _PARTS * bins]
             for i in range(len(parts)):
                 parts[i] = 0
             every = min(max(sizes[one] // _ENOUGH, 1), _SPARSEST)
@@ -69,7 +73,7 @@ def levels_of(
                 for part in range(1, _PARTS):
                     parts[i] += parts[part * bins + i]
             found = levels[count : count + _MOST]
-            count += _limits(found, _peaks(histogram, width, min_size / every, found), band, apart)
+            count += _limits(found, _peaks(parts[:bins], width, min_size / every, found), band, apart)
         first[one + 1] = count
     return first, levels[:count]
 

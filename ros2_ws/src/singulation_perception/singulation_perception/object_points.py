@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
+from singulation_perception.byte_scan import end_of, repeated
 from singulation_perception.cloud_sample import Workspace
 from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, X, Y, coordinates, marked_blocks
-from singulation_perception.jit import compiled_plain, compiled_sums
+from singulation_perception.jit import compiled_part_sums, compiled_plain, compiled_sums
 from singulation_perception.raster import Raster
 
 IntArray = NDArray[np.int32]
@@ -18,7 +19,8 @@ ROW, START, STOP, FIRST = 0, 1, 2, 3  # columns of a table of runs
 LOW, HIGH, SUM, SQUARES = 0, 1, 2, 3  # columns of the spans of runs
 
 _ROOM = 800_000  # points at first: usual scenes need less, and fresh memory costs more than looking at the points
-_LOW, _OUTSIDE, _BEGINS, _GOES_ON = 0, 1, 2, 3  # kinds of points; an object's begin a run or go on with one
+_NOTHING, _BEGINS, _GOES_ON = np.uint8(0), np.uint8(1), np.uint8(2)  # kinds of points: an object's begin a run or go on
+_ALL_NOTHING, _ALL_GO_ON = repeated(0), repeated(2)
 _TOO_FAR = 100.0  # [m] above the table: an infinite or absurd point
 
 
@@ -93,8 +95,8 @@ def _collect(
 ) -> tuple[int, int, int]:
     """Numbers of points and runs written, and of points outside; -1 points if there is no room for all."""
     x, y = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.float32)
-    height, kind = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.uint8)
-    numbers = xyz.reshape(-1)
+    height, kind = np.empty(cloud.width, dtype=np.float32), np.zeros((cloud.width + 7) // 8 * 8, dtype=np.uint8)
+    words, numbers = kind.view(np.uint64), xyz.reshape(-1)
     count, run, outside = 0, 0, 0
     for row in range(cloud.height):
         stop, right = np.int64(columns[row, 0]), np.int64(columns[row, 1])
@@ -102,21 +104,23 @@ def _collect(
             return -1, 0, 0
         while stop < right:
             begin, stop = _marked(marks[row // stride], stop, right)
+            if begin == stop:
+                continue
             coordinates(cloud, row, begin, pose, HEIGHT, height, stop - begin)
             coordinates(cloud, row, begin, pose, X, x, stop - begin)
             coordinates(cloud, row, begin, pose, Y, y, stop - begin)
-            _classify(x, y, height, kind, stop - begin, limits, lowest, pose[2, 3], step)
-            i = 0
-            while i < stop - begin:
-                if kind[i] == _LOW or kind[i] == _OUTSIDE:
-                    outside += kind[i] == _OUTSIDE
-                    i += 1
-                    continue
-                end = _end_of_run(kind, np.int64(i), stop - begin)
+            outside += _classify(x, y, height, kind, stop - begin, limits, lowest, pose[2, 3], step)
+            size = np.uintp(stop - begin)
+            first = end_of(words, np.uintp(0), size, _ALL_NOTHING)
+            while first < size:
+                end = first + np.uintp(1)
+                if end < size:
+                    end = end_of(words, end, size, _ALL_GO_ON)
                 runs[run, ROW], runs[run, FIRST] = row, count
-                runs[run, START], runs[run, STOP] = begin + i, begin + end
-                _take(x, y, height, np.int64(i), end, numbers, np.int64(count), spans, np.int64(run))
-                run, count, i = run + 1, count + end - i, end
+                runs[run, START], runs[run, STOP] = begin + first, begin + end
+                _take(x, y, height, first, end, numbers, np.int64(count), spans, np.int64(run))
+                run, count = run + 1, count + np.int64(end - first)
+                first = end_of(words, end, size, _ALL_NOTHING) if end < size else size
     return count, run, outside
 
 
@@ -132,15 +136,7 @@ def _marked(marks: Marks, begin: int, right: int) -> tuple[int, int]:
     return begin, min(stop, right)
 
 
-@compiled_plain
-def _end_of_run(kind: NDArray[np.uint8], first: int, size: int) -> int:
-    end = first + 1
-    while end < size and kind[end] == _GOES_ON:
-        end += 1
-    return end
-
-
-@compiled_plain
+@compiled_part_sums
 def _classify(
     x: Values,
     y: Values,
@@ -151,43 +147,62 @@ def _classify(
     lowest: np.float32,
     nowhere: np.float32,
     step: np.float32,
-) -> None:
-    """Says of each point whether it belongs to an object, and whether to the run of the one before.
+) -> int:
+    """Says of each point whether it belongs to an object, and whether to the run of the one before; how many would but
+    for the workspace.
 
     Only ``nowhere``, the height of (0, 0, 0), is that high: what is not a point counts as low.
     """
     x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
+    outside = 0
     for k in range(size):
         i = np.uintp(k)
         high = (height[i] > lowest) & (height[i] < _TOO_FAR) & (height[i] != nowhere)
         inside = (x[i] >= x_min) & (x[i] <= x_max) & (y[i] >= y_min) & (y[i] <= y_max)
-        kind[i] = np.uint8(high) * (np.uint8(1) + np.uint8(inside))
+        kind[i] = np.uint8(high & inside)
+        outside += high & ~inside
     for k in range(size - 1):
         one, two = np.uintp(size - 2 - k), np.uintp(size - 1 - k)
         near = (kind[one] == _BEGINS) & (kind[two] == _BEGINS) & (abs(height[two] - height[one]) <= step)
         kind[two] += np.uint8(near)
+    return outside
 
 
-@compiled_sums
+@compiled_part_sums
 def _take(
-    x: Values, y: Values, height: Values, first: int, end: int, numbers: Values, count: int, spans: FloatArray, run: int
+    x: Values,
+    y: Values,
+    height: Values,
+    first: np.uintp,
+    end: np.uintp,
+    numbers: Values,
+    count: int,
+    spans: FloatArray,
+    run: int,
 ) -> None:
-    """Writes the points of a run and its span; a flat array, because a known step makes vector instructions."""
-    base, at = np.uintp(first), np.uintp(3 * count)
+    """Writes the points of a run and its span.
+
+    In a flat array, because a known step makes vector instructions; so do sums of small differences, which single
+    precision holds.
+    """
+    at = np.uintp(3 * count)
     one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
     for k in range(end - first):
         i = np.uintp(k)
-        numbers[at + three * i], numbers[at + three * i + one] = x[base + i], y[base + i]
-        numbers[at + three * i + two] = height[base + i]
-    low, high, total, squares = height[first], height[first], 0.0, 0.0
+        numbers[at + three * i], numbers[at + three * i + one] = x[first + i], y[first + i]
+        numbers[at + three * i + two] = height[first + i]
+    level, total, squares = height[first], np.float32(0.0), np.float32(0.0)
     for k in range(end - first):
-        level = np.float64(height[base + np.uintp(k)])
-        total += level
-        squares += level * level
+        more = height[first + np.uintp(k)] - level
+        total += more
+        squares += more * more
+    low, high = level, level
     for k in range(end - first):
-        level = height[base + np.uintp(k)]
-        low, high = min(low, level), max(high, level)
-    spans[run, LOW], spans[run, HIGH], spans[run, SUM], spans[run, SQUARES] = low, high, total, squares
+        value = height[first + np.uintp(k)]
+        low, high = min(low, value), max(high, value)
+    count_of_run, base = np.float64(end - first), np.float64(level)
+    spans[run, LOW], spans[run, HIGH], spans[run, SUM] = low, high, count_of_run * base + total
+    spans[run, SQUARES] = count_of_run * base * base + 2.0 * base * total + squares
 
 
 @compiled_plain

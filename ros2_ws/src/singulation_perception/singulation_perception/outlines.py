@@ -11,6 +11,7 @@ from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled, compiled_part, compiled_plain
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale, concave_area
+from singulation_perception.shapes import Shape, shape_of
 from singulation_perception.simplified import simplified
 
 _ROUNDS = 4
@@ -28,6 +29,7 @@ class Outlines:
         supported: (n,) share of the length of each outline with points of its ring near it.
         concave: (n,) area between each ring and its hull, roughness and spurs apart [m^2].
         box: (n, 4) least and greatest x, least and greatest y of each outline [m].
+        shapes: (n, 4) of each outline, as in ``Shape``.
     """
 
     corners: FloatArray
@@ -35,11 +37,19 @@ class Outlines:
     supported: FloatArray
     concave: FloatArray
     box: FloatArray
+    shapes: FloatArray
 
-    def outline(self, k: int) -> FloatArray | None:
-        """(k, 2) outline of ring k [m], None if it has no area."""
-        begin, end = self.first[k], self.first[k + 1]
-        return self.corners[begin:end] if end - begin >= 3 else None
+    def is_polygon(self, k: int) -> bool:
+        """Whether ring k has an area."""
+        return bool(self.first[k + 1] - self.first[k] >= 3)
+
+    def outline(self, k: int) -> FloatArray:
+        """(k, 2) outline of ring k [m]."""
+        return self.corners[self.first[k] : self.first[k + 1]]
+
+    def shape(self, k: int) -> Shape:
+        """Of the outline of ring k."""
+        return Shape(*self.shapes[k].tolist())
 
 
 def outlines_of(rings: list[FloatArray], measures: FloatArray) -> Outlines:
@@ -59,9 +69,10 @@ def outlines_of(rings: list[FloatArray], measures: FloatArray) -> Outlines:
 @compiled
 def _outlines(
     points: FloatArray, begin: IntArray, measures: FloatArray
-) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray, FloatArray]:
     corners, first = np.empty((len(points), 2)), np.zeros(len(begin), dtype=np.int32)
     supported, concave, box = np.zeros(len(measures)), np.zeros(len(measures)), np.zeros((len(measures), 4))
+    shapes = np.zeros((len(measures), 4))
     count = 0
     for k in range(len(measures)):
         ring = points[begin[k] : begin[k + 1]]
@@ -76,13 +87,15 @@ def _outlines(
                 box[k, 0], box[k, 1] = min(box[k, 0], x), max(box[k, 1], x)
                 box[k, 2], box[k, 3] = min(box[k, 2], y), max(box[k, 3], y)
                 count += 1
+            shape = shape_of(outline)
+            shapes[k, 0], shapes[k, 1], shapes[k, 2], shapes[k, 3] = shape.x, shape.y, shape.radius, shape.length
             concave[k] = concave_area(ring, hull, scale.roughness)
             if concave[k] > 0.0:
                 inner = _without_spurs(ring, outline, scale.pitch)
                 concave[k] = concave_area(inner, hull_indices(inner), scale.roughness)
             supported[k] = supported_share(outline, ring, scale.roughness + scale.growth, scale.pitch)
         first[k + 1] = count
-    return corners[:count], first, supported, concave, box
+    return corners[:count], first, supported, concave, box, shapes
 
 
 @compiled_part

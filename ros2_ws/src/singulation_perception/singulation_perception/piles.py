@@ -4,8 +4,8 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray, convex_hull, inward_half_planes, signed_area
 from singulation_perception.confidence import CLIPPED, STACKED
-from singulation_perception.convex_overlap import shared_area
 from singulation_perception.found_block import FoundBlock
+from singulation_perception.shapes import meeting_pairs, shape_of, shared_area
 
 _STACKED = 0.25  # share of the upper block that lies over the lower one
 _NEGLIGIBLE = 0.02  # share of the lower block that noise explains
@@ -31,12 +31,12 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
     while waiting:
         block = waiting.pop(0)
         for upper in [one for one in waiting if one.height > block.height + step and _near(block, one)]:
-            shared = float(shared_area(block.outline, upper.outline))
-            if shared > _STACKED * signed_area(upper.outline):
+            shared, own, others = shared_area(block.outline, upper.outline)
+            if shared > _STACKED * others:
                 waiting.remove(upper)
                 block = _pile(block, upper)
                 stacked += 1
-            elif shared > _NEGLIGIBLE * signed_area(block.outline):
+            elif shared > _NEGLIGIBLE * own:
                 block = _clipped(block, upper)
         done.append(block)
     return done, stacked
@@ -44,24 +44,20 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
 
 def near_pairs(blocks: list[FoundBlock], step: float) -> list[tuple[int, int]]:
     """Lower and higher block of all pairs of different height whose bounding circles meet."""
-    if len(blocks) < 2:
-        return []
-    x, y = np.array([block.centre for block in blocks]).T
-    radius, height = np.array([block.radius for block in blocks]), np.array([block.height for block in blocks])
-    apart = np.hypot(x[:, np.newaxis] - x, y[:, np.newaxis] - y)
-    near = (apart < radius[:, np.newaxis] + radius) & (height > height[:, np.newaxis] + step)
-    return [(i, j) for i, j in np.argwhere(near).tolist()]
+    shapes = np.array([block.shape for block in blocks]).reshape(-1, 4)
+    pairs = meeting_pairs(shapes, np.array([block.height for block in blocks]), step)
+    return [(i, j) for i, j in pairs.tolist()]
 
 
 def _overlap(lower: FoundBlock, upper: FoundBlock) -> bool:
     """Whether they overlap more than noise explains."""
-    shared = float(shared_area(lower.outline, upper.outline))
-    return shared > min(_STACKED * signed_area(upper.outline), _NEGLIGIBLE * signed_area(lower.outline))
+    shared, own, others = shared_area(lower.outline, upper.outline)
+    return bool(shared > min(_STACKED * others, _NEGLIGIBLE * own))
 
 
 def _near(one: FoundBlock, two: FoundBlock) -> bool:
-    x, y = one.centre - two.centre
-    return bool(x * x + y * y < (one.radius + two.radius) ** 2)
+    x, y = one.shape.x - two.shape.x, one.shape.y - two.shape.y
+    return x * x + y * y < (one.shape.radius + two.shape.radius) ** 2
 
 
 def cut_off(outline: FloatArray, normal: FloatArray, offset: float) -> FloatArray:
@@ -80,7 +76,8 @@ def cut_off(outline: FloatArray, normal: FloatArray, offset: float) -> FloatArra
 def _pile(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
     outline = convex_hull(np.vstack((lower.outline, upper.outline)))
     confidence = STACKED * min(lower.confidence, upper.confidence)
-    return FoundBlock(outline, upper.height, lower.count + upper.count, confidence, lower.surface, lower.face)
+    count = lower.count + upper.count
+    return FoundBlock(outline, shape_of(outline), upper.height, count, confidence, lower.surface, lower.face)
 
 
 def _clipped(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
@@ -92,8 +89,7 @@ def _clipped(lower: FoundBlock, upper: FoundBlock) -> FoundBlock:
     best = max(parts, key=lambda part: signed_area(part) if len(part) > 2 else 0.0)
     if len(best) < 3 or not (signed_area(best) > _SLIVER):
         return lower.doubted(STACKED)
-    best = _without_details(convex_hull(best))
-    return FoundBlock(best, lower.height, lower.count, CLIPPED * lower.confidence, lower.surface, lower.face)
+    return lower.redrawn(_without_details(convex_hull(best)), CLIPPED)
 
 
 def _without_details(outline: FloatArray) -> FloatArray:

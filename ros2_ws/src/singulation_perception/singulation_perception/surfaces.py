@@ -97,7 +97,7 @@ def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, 
     """
     wanted = (surfaces.count >= min_size) & (surfaces.top <= highest)
     first, levels = levels_of(
-        seen.xyz, seen.runs, surfaces.of_run, surfaces.count, wanted, band, apart, highest, min_size
+        seen.xyz, seen.runs, surfaces.of_run, surfaces.count, surfaces.top, wanted, band, apart, min_size
     )
     runs, spans, level = _runs_on_levels(seen.xyz, seen.runs, seen.spans, surfaces.of_run, first, levels)
     face, count = connected_runs(seen.xyz, runs, spans, level, np.inf)

@@ -12,6 +12,7 @@ from singulation_perception.outlines import outlines_of
 from singulation_perception.raster import raster_of
 from singulation_perception.rings import Scale
 from singulation_perception.segmentation import segment_cloud
+from singulation_perception.shapes import shape_of
 from singulation_perception.splitting import split
 
 _PITCH = 0.001
@@ -24,7 +25,7 @@ def warm_up() -> None:
     With empty caches this compiles for most of a minute; after that it takes about a second.
     """
     _see_image()
-    _look_beyond()
+    _seldom()
     _see_points()
 
 
@@ -46,9 +47,10 @@ def _cut() -> None:
     split(_ring_of_an_l(), _SCALE, image, 0.1 * _PITCH)
 
 
-def _look_beyond() -> None:
+def _seldom() -> None:
     cloud, plane = raster_of(np.ones((2, 2, 3), dtype=np.float32)), np.zeros(4, dtype=np.float32)
     place = np.zeros(2)
+    shape_of(_ring_of_an_l())  # of outlines that are drawn again
     count_lower(cloud, plane, np.zeros((2, 3)), np.zeros(2, dtype=np.int32), place, place, place, np.float32(0.0))
 
 
@@ -57,7 +59,7 @@ def _outline() -> None:
 
 
 # What helper processes begin with: the parts of the warm-up that take longest to compile and come last.
-STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _look_beyond, _see_points)
+STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _seldom, _see_points)
 
 
 def _ring_of_an_l() -> FloatArray:

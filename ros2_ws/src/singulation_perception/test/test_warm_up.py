@@ -12,9 +12,6 @@ import singulation_perception
 from numba.core.dispatcher import Dispatcher
 from singulation_perception.warming import STEPS
 
-# Called by compiled functions only, but kept apart for their sums.
-INNER = ("_heights", "_take", "coordinates", "fitted_line")
-
 singulation_perception.warm_up()
 for step in STEPS:
     step()
@@ -22,8 +19,7 @@ for name, module in list(sys.modules.items()):
     if name.startswith("singulation_perception."):
         for function in vars(module).values():
             if isinstance(function, Dispatcher) and function.py_func.__module__ == name:
-                inner = function.targetoptions.get("no_cpython_wrapper") or function.py_func.__name__ in INNER
-                if not inner and len(function.signatures) != 1:
+                if not function.targetoptions.get("no_cpython_wrapper") and len(function.signatures) != 1:
                     print(name, function.py_func.__name__, len(function.signatures))
 """
 

@@ -1,0 +1,55 @@
+"""Compiled measures of outlines against the ones that every object of an arrangement is measured with."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ros2_ws.src.singulation_perception.test.table_top import box, turned
+
+from singulation_core.polygon import area_centroid, bounding_radius, convex_hull, signed_area
+from singulation_perception.piles import cut_off
+from singulation_perception.shapes import meeting_pairs, shape_of, shared_area
+
+NUMBERS = st.floats(-0.3, 0.3, allow_subnormal=False)
+
+
+@st.composite
+def outlines(draw):
+    """Convex, of at least a square millimetre."""
+    hull = convex_hull(draw(st.lists(st.tuples(NUMBERS, NUMBERS), min_size=3, max_size=12)))
+    if len(hull) < 3 or signed_area(hull) < 1e-6:
+        hull = hull[0] + np.array(((0.0, 0.0), (0.02, 0.0), (0.01, 0.02)))
+    return np.ascontiguousarray(hull)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.3])
+def test_a_square_is_as_long_as_its_side_and_a_right_triangle_as_its_longer_leg(angle):
+    square, triangle = box(0.0, 0.0, 0.04, 0.04), np.array(((0.0, 0.0), (0.06, 0.0), (0.0, 0.03)))
+    assert shape_of(turned(square, angle)).length == pytest.approx(0.04)
+    assert shape_of(turned(triangle, angle)).length == pytest.approx(0.06)
+
+
+@given(outline=outlines())
+def test_centre_and_radius_are_those_of_the_object(outline):
+    shape, centre = shape_of(outline), area_centroid(outline)
+    assert (shape.x, shape.y) == pytest.approx(tuple(centre), abs=1e-9)
+    assert shape.radius == pytest.approx(bounding_radius(outline, centre), abs=1e-9)
+
+
+@given(one=outlines(), two=outlines())
+def test_what_two_outlines_share_is_what_the_edges_of_one_leave_of_the_other(one, two):
+    left = two
+    for start, stop in zip(one, np.roll(one, -1, axis=0), strict=True):
+        normal = np.array((start[1] - stop[1], stop[0] - start[0]))
+        left = cut_off(left, normal, float(normal @ start)) if len(left) > 2 else left
+    expected = signed_area(left) if len(left) > 2 else 0.0
+    shared, own, others = shared_area(one, two)
+    assert shared == pytest.approx(expected, abs=1e-8)
+    assert (own, others) == pytest.approx((signed_area(one), signed_area(two)))
+
+
+def test_pairs_are_those_of_different_height_whose_circles_meet():
+    shapes = np.array(((0.0, 0.0, 0.03, 0.0), (0.05, 0.0, 0.03, 0.0), (0.2, 0.0, 0.03, 0.0), (0.0, 0.05, 0.03, 0.0)))
+    heights = np.array((0.02, 0.03, 0.04, 0.0205))
+    assert meeting_pairs(shapes, heights, 0.001).tolist() == [[0, 1]]
+    assert meeting_pairs(shapes[:0], heights[:0], 0.001).tolist() == []
