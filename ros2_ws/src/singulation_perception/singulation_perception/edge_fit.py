@@ -10,10 +10,10 @@ for plain least squares, and moves by 0.2 spacings instead of 0.4 when the loss 
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled_part, compiled_part_sums
-from singulation_perception.object_points import IntArray
 
 _INSIDE_WEIGHT = 0.1
 _ROUNDS = 8
@@ -22,20 +22,26 @@ _PARALLEL = 0.05  # sine below which two edges have no corner
 
 
 @compiled_part_sums
-def fitted_line(points: FloatArray, count: int, normal_x: float, normal_y: float) -> tuple[float, float, float]:
-    """Outward unit normal and offset of the line along the outer limit of the first ``count`` points.
+def fitted_line(room: FloatArray, count: int, normal_x: float, normal_y: float) -> tuple[float, float, float]:
+    """Outward unit normal and offset of the line along the outer limit of some points.
 
     The normal given is about right: the line is sought as inset over the position along the edge.
+
+    Args:
+        room: (5, n) x and y of the points [m] in the first two rows; the others are worked in.
+        count: points.
+        normal_x: of the normal.
+        normal_y: of the normal.
     """
+    x, y, along, inset, weight = room[0], room[1], room[2], room[3], room[4]
     cx, cy = 0.0, 0.0
     for i in range(count):
-        cx, cy = cx + points[i, 0] / count, cy + points[i, 1] / count
-    along, inset, weight = np.empty(count), np.empty(count), np.empty(count)
+        cx, cy = cx + x[i], cy + y[i]
+    cx, cy = cx / count, cy / count
     for i in range(count):
         weight[i] = 1.0
-        x, y = points[i, 0] - cx, points[i, 1] - cy
-        along[i] = y * normal_x - x * normal_y
-        inset[i] = -(x * normal_x + y * normal_y)
+        along[i] = (y[i] - cy) * normal_x - (x[i] - cx) * normal_y
+        inset[i] = -((x[i] - cx) * normal_x + (y[i] - cy) * normal_y)
     level, slope = 0.0, 0.0
     for _ in range(_ROUNDS):
         w, wt, wx, wtt, wtx = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -56,11 +62,10 @@ def fitted_line(points: FloatArray, count: int, normal_x: float, normal_y: float
             weight[i] = new
         if changed == 0:
             break
-    x = normal_x - slope * normal_y
-    y = normal_y + slope * normal_x
-    length = math.sqrt(x * x + y * y)
-    x, y = x / length, y / length
-    return x, y, x * (cx - level * normal_x) + y * (cy - level * normal_y)
+    nx, ny = normal_x - slope * normal_y, normal_y + slope * normal_x
+    length = math.sqrt(nx * nx + ny * ny)
+    nx, ny = nx / length, ny / length
+    return nx, ny, nx * (cx - level * normal_x) + ny * (cy - level * normal_y)
 
 
 @compiled_part
@@ -107,7 +112,7 @@ def refitted(ring: FloatArray, polygon: FloatArray, reach: float, margin: float)
     lines = edges_of(polygon)
     edge = _nearest_edges(ring, lines, reach)
     fitted = lines.copy()
-    chosen = np.empty_like(ring)
+    room = np.empty((5, len(ring)))
     for k in range(len(polygon)):
         j = k + 1 if k + 1 < len(polygon) else 0
         ux, uy = -lines[k, 1], lines[k, 0]
@@ -118,22 +123,28 @@ def refitted(ring: FloatArray, polygon: FloatArray, reach: float, margin: float)
             if edge[i] == k:
                 position = ux * (ring[i, 0] - polygon[k, 0]) + uy * (ring[i, 1] - polygon[k, 1])
                 if rim < position < length - rim:
-                    chosen[count, 0], chosen[count, 1] = ring[i, 0], ring[i, 1]
+                    room[0, count], room[1, count] = ring[i, 0], ring[i, 1]
                     count += 1
         if count >= _FEWEST:
-            x, y, offset = fitted_line(chosen, np.int64(count), lines[k, 0], lines[k, 1])
+            x, y, offset = fitted_line(room, np.int64(count), lines[k, 0], lines[k, 1])
             fitted[k, 0], fitted[k, 1], fitted[k, 2] = x, y, offset
     return fitted
 
 
 @compiled_part
-def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> IntArray:
-    edge = np.empty(len(ring), dtype=np.int32)
+def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> NDArray[np.int64]:
+    """The nearest edge of each point, -1 if none is near; edge after edge, which makes vector instructions."""
+    edge, nearest = np.empty(len(ring), dtype=np.int64), np.empty(len(ring))
     for i in range(len(ring)):
-        best, nearest = -1, reach
-        for k in range(len(lines)):
-            distance = abs(lines[k, 2] - lines[k, 0] * ring[i, 0] - lines[k, 1] * ring[i, 1])
-            if distance < nearest:
-                best, nearest = k, distance
-        edge[i] = best
+        edge[i], nearest[i] = -1, reach
+    points = ring.reshape(-1)
+    one, two = np.uintp(1), np.uintp(2)
+    for k in range(len(lines)):
+        a, b, c = lines[k, 0], lines[k, 1], lines[k, 2]
+        for n in range(len(ring)):
+            i = np.uintp(n)
+            distance = abs(c - a * points[two * i] - b * points[two * i + one])
+            closer = distance < nearest[i]
+            edge[i] = k if closer else edge[i]
+            nearest[i] = distance if closer else nearest[i]
     return edge

@@ -24,17 +24,19 @@ from singulation_perception.surfaces import Faces
 _TOLERANCE_IN_PITCHES = 4.0
 _BORDER = 2  # pixels and pitches
 _POCKET = 0.008  # [m] cost of a pocket from which on it is a doubt; the end of a shadow bites up to that much off a rim
+_UNKNOWN = np.empty(0, dtype=np.int32)  # hull
 _BESIDE = 4.0  # pitches between a seam's middle and the rim of a piece beside it
 
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """Part of a face that may be a block: number of the face's image, (m, 2) rim [m], lead of the most doubtful seam
-    beside it [m], whether one of its seams ends where nothing shows it.
+    """Part of a face that may be a block: number of the face's image, (m, 2) rim [m], corners of its hull if it is
+    convex, lead of the most doubtful seam beside it [m], whether one of its seams ends where nothing shows it.
     """
 
     face: int
     ring: FloatArray
+    hull: IntArray
     lead: float = np.inf
     loose: bool = False
 
@@ -72,7 +74,8 @@ class FaceBlocks:
         dropped["sliver"] += sum(slivers)
         pieces = [piece for k, sliver in enumerate(slivers) if not sliver for piece in self._pieces(k, suspects.get(k))]
         face = np.array([piece.face for piece in pieces], dtype=np.int32)
-        outlines = outlines_of([piece.ring for piece in pieces], self._measures()[face])
+        rings, hulls = [piece.ring for piece in pieces], [piece.hull for piece in pieces]
+        outlines = outlines_of(rings, hulls, self._measures()[face])
         confidence = self._evidence(face, pieces, outlines).confidence.tolist()
         found: list[FoundBlock] = []
         for k, members in groupby(range(len(pieces)), lambda i: pieces[i].face):
@@ -126,17 +129,17 @@ class FaceBlocks:
         concave = bool(self.rings.concave[k] > 0.0)
         looking = suspects if cutting else None
         if not concave and looking is None:
-            return [_Piece(k, ring)]
+            return [_Piece(k, ring, self.rings.hull(k))]
         scale, image = self._scale(k), self.image(k)
         height = float(self.faces.height[self.maps.faces[k]])
         pieces: list[_Piece] = []
         for part in (ring,) if looking is None else split_seen(ring, scale, image, looking):
             if part is ring and not concave:
-                pieces.append(_Piece(k, ring))
+                pieces.append(_Piece(k, ring, self.rings.hull(k)))
                 continue
             whole = without_hidden(part, image.pixels(part), scale.roughness, self.view, height)
             result = split(whole, scale, image, self.noise) if cutting else Split(0.0, (whole,))
-            pieces += [_Piece(k, piece, *_doubts(piece, result, scale)) for piece in result.pieces]
+            pieces += [_Piece(k, piece, _UNKNOWN, *_doubts(piece, result, scale)) for piece in result.pieces]
         return pieces
 
     def _shares(self, k: int, outlines: list[FloatArray]) -> tuple[list[int], list[float]]:

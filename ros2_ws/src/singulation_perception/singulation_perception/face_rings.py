@@ -29,6 +29,8 @@ class FaceRings:
         width: (k,) least width [m].
         thickness: (k,) twice the area over the length of the ring [m].
         concave: (k,) area between ring and hull, roughness apart [m^2].
+        hulls: numbers of the points of each ring that are corners of its hull, one ring after another.
+        hull_begin: (k + 1,) where each ring's begin.
     """
 
     points: FloatArray
@@ -39,10 +41,16 @@ class FaceRings:
     width: FloatArray
     thickness: FloatArray
     concave: FloatArray
+    hulls: IntArray
+    hull_begin: IntArray
 
     def ring(self, k: int) -> FloatArray:
         """(m, 2) points of ring k, a view."""
         return self.points[self.begin[k] : self.begin[k + 1]]
+
+    def hull(self, k: int) -> IntArray:
+        """Numbers of the corners of the hull of ring k, a view."""
+        return self.hulls[self.hull_begin[k] : self.hull_begin[k + 1]]
 
 
 def face_rings(
@@ -101,11 +109,16 @@ def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple
 @compiled
 def _measures(
     points: FloatArray, begin: IntArray, area: FloatArray, roughness: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, FloatArray, IntArray, IntArray]:
     width, thickness, concave = np.zeros(len(area)), np.zeros(len(area)), np.zeros(len(area))
+    hulls, hull_begin = np.empty(len(points), dtype=np.int32), np.zeros(len(area) + 1, dtype=np.int32)
     for k in range(len(area)):
         ring = points[begin[k] : begin[k + 1]]
         hull = hull_indices(ring)
+        first = hull_begin[k]
+        hull_begin[k + 1] = first + len(hull)
+        for i in range(len(hull)):
+            hulls[first + i] = hull[i]
         if len(hull) > 2:
             length = 0.0
             for i in range(len(ring)):
@@ -114,4 +127,4 @@ def _measures(
             width[k] = least_width(ring, hull)
             thickness[k] = 2.0 * area[k] / length
             concave[k] = concave_area(ring, hull, roughness[k])
-    return width, thickness, concave
+    return width, thickness, concave, hulls, hull_begin

@@ -10,6 +10,7 @@ from singulation_perception.byte_scan import end_of, repeated
 from singulation_perception.cloud_sample import Workspace
 from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, X, Y, coordinates, marked_blocks
 from singulation_perception.jit import compiled_part_sums, compiled_plain, compiled_sums
+from singulation_perception.prefetch import LINE, prefetch
 from singulation_perception.raster import Raster
 
 IntArray = NDArray[np.int32]
@@ -21,6 +22,7 @@ LOW, HIGH, SUM, SQUARES = 0, 1, 2, 3  # columns of the spans of runs
 _ROOM = 800_000  # points at first: usual scenes need less, and fresh memory costs more than looking at the points
 _NOTHING, _BEGINS, _GOES_ON = np.uint8(0), np.uint8(1), np.uint8(2)  # kinds of points: an object's begin a run or go on
 _ALL_NOTHING, _ALL_GO_ON = repeated(0), repeated(2)
+_AHEAD = 4  # rows: of 1, 2, 4 and 8 the fastest, a fifth less than without, where the cloud is in no cache
 _TOO_FAR = 100.0  # [m] above the table: an infinite or absurd point
 
 
@@ -106,6 +108,9 @@ def _collect(
             begin, stop = _marked(marks[row // stride], stop, right)
             if begin == stop:
                 continue
+            ahead = min(row + _AHEAD, cloud.height - 1) * cloud.row_step
+            for at in range(begin * cloud.point_step, stop * cloud.point_step, LINE):
+                prefetch(cloud.numbers, ahead + at)
             coordinates(cloud, row, begin, pose, HEIGHT, height, stop - begin)
             coordinates(cloud, row, begin, pose, X, x, stop - begin)
             coordinates(cloud, row, begin, pose, Y, y, stop - begin)

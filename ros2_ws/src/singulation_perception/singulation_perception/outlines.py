@@ -1,5 +1,6 @@
 """From the rims of top faces to convex polygons on the table: hull, Douglas-Peucker, edges fitted to the rim."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,23 +53,30 @@ class Outlines:
         return Shape(*self.shapes[k].tolist())
 
 
-def outlines_of(rings: list[FloatArray], measures: FloatArray) -> Outlines:
+def outlines_of(rings: list[FloatArray], hulls: list[IntArray], measures: FloatArray) -> Outlines:
     """Fits a convex polygon to each ring; one call for all, because calls cost more than the fits.
 
     Args:
         rings: (m, 2) rims of faces or of parts of them, counter-clockwise [m].
+        hulls: of each the numbers of the corners of its hull if they are known and the ring is convex but for its
+            roughness, else none.
         measures: (n, 4) of each: tolerance of Douglas-Peucker, no finer detail is kept, and the three lengths of its
             ``Scale`` [m].
     """
-    begin = np.zeros(len(rings) + 1, dtype=np.int32)
-    np.cumsum([len(ring) for ring in rings], out=begin[1:])
     points = np.concatenate(rings) if rings else np.empty((0, 2))
-    return Outlines(*_outlines(points, begin, measures))
+    corners = np.concatenate(hulls) if hulls else np.empty(0, dtype=np.int32)
+    return Outlines(*_outlines(points, _begins(rings), corners, _begins(hulls), measures))
+
+
+def _begins(parts: Sequence[FloatArray | IntArray]) -> IntArray:
+    begin = np.zeros(len(parts) + 1, dtype=np.int32)
+    np.cumsum([len(part) for part in parts], out=begin[1:])
+    return begin
 
 
 @compiled
 def _outlines(
-    points: FloatArray, begin: IntArray, measures: FloatArray
+    points: FloatArray, begin: IntArray, hulls: IntArray, hull_begin: IntArray, measures: FloatArray
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray, FloatArray]:
     corners, first = np.empty((len(points), 2)), np.zeros(len(begin), dtype=np.int32)
     supported, concave, box = np.zeros(len(measures)), np.zeros(len(measures)), np.zeros((len(measures), 4))
@@ -77,7 +85,10 @@ def _outlines(
     for k in range(len(measures)):
         ring = points[begin[k] : begin[k + 1]]
         scale = Scale(measures[k, 1], measures[k, 2], measures[k, 3])
-        hull = hull_indices(ring)
+        hull = hulls[hull_begin[k] : hull_begin[k + 1]]
+        convex = len(hull) > 0
+        if not convex:
+            hull = hull_indices(ring)
         if len(hull) >= 3:
             outline = _fitted(ring, hull, measures[k, 0], scale)
             box[k, 0], box[k, 1], box[k, 2], box[k, 3] = np.inf, -np.inf, np.inf, -np.inf
@@ -89,7 +100,7 @@ def _outlines(
                 count += 1
             shape = shape_of(outline)
             shapes[k, 0], shapes[k, 1], shapes[k, 2], shapes[k, 3] = shape.x, shape.y, shape.radius, shape.length
-            concave[k] = concave_area(ring, hull, scale.roughness)
+            concave[k] = 0.0 if convex else concave_area(ring, hull, scale.roughness)
             if concave[k] > 0.0:
                 inner = _without_spurs(ring, outline, scale.pitch)
                 concave[k] = concave_area(inner, hull_indices(inner), scale.roughness)

@@ -61,13 +61,13 @@ def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
     The last may lie beyond the end of the ring: count on from its start.
     """
     corners = _in_order(hull)
-    found = np.empty((len(corners), 4))
+    found, deepest = np.empty((len(corners), 4)), np.empty(_RANK)
     count = 0
     for k in range(len(corners)):
         first = np.int64(corners[k])
         last = np.int64(corners[k + 1]) if k + 1 < len(corners) else np.int64(corners[0]) + len(ring)
-        if last - first > _RANK:
-            area, depth = _pocket(ring, first, last)
+        if last - first > _RANK and _stands_back(ring, first, last, roughness):
+            area, depth = _pocket(ring, first, last, deepest)
             if depth > roughness:
                 found[count, 0], found[count, 1], found[count, 2], found[count, 3] = first, last, area, depth
                 count += 1
@@ -87,16 +87,31 @@ def _in_order(hull: IntArray) -> IntArray:
     return corners
 
 
-@compiled_part
-def _pocket(ring: FloatArray, first: int, last: int) -> tuple[float, float]:
-    """Area behind one edge of the hull and how deep its fourth deepest point lies."""
+@compiled_plain
+def _stands_back(ring: FloatArray, first: int, last: int, roughness: float) -> bool:
+    """Whether any point behind one edge of the hull is deeper than ``roughness`` [m]; behind most edges none is."""
+    size = len(ring)
+    end = last if last < size else last - size
+    ax, ay = ring[first, 0], ring[first, 1]
+    ex, ey = ring[end, 0] - ax, ring[end, 1] - ay
+    deepest = 0.0
+    for at in range(first + 1, last):
+        i = at if at < size else at - size
+        deepest = max(deepest, ex * (ring[i, 1] - ay) - ey * (ring[i, 0] - ax))
+    return deepest > roughness * math.sqrt(ex * ex + ey * ey)
+
+
+@compiled_plain
+def _pocket(ring: FloatArray, first: int, last: int, deepest: FloatArray) -> tuple[float, float]:
+    """Area behind one edge of the hull and how deep its fourth deepest point lies; ``deepest`` is worked in."""
     size = len(ring)
     end = last if last < size else last - size
     ex, ey = ring[end, 0] - ring[first, 0], ring[end, 1] - ring[first, 1]
     length = math.sqrt(ex * ex + ey * ey)
     if length == 0.0:
         return 0.0, 0.0
-    deepest = np.zeros(_RANK)
+    for place in range(_RANK):
+        deepest[place] = 0.0
     area = 0.0
     before_x, before_y = 0.0, 0.0
     for at in range(first + 1, last + 1):
@@ -117,14 +132,31 @@ def _pocket(ring: FloatArray, first: int, last: int) -> tuple[float, float]:
 @compiled_plain
 def least_width(ring: FloatArray, hull: IntArray) -> float:
     """Distance of the closest pair of parallel lines that hold the ring [m]."""
-    least = np.inf
-    for k in range(len(hull)):
-        a, b = hull[k], hull[k + 1] if k + 1 < len(hull) else hull[0]
+    least, count, opposite = np.inf, len(hull), -1
+    for k in range(count):  # the corner opposite to an edge moves on as the edge does (Shamos 1978)
+        a, b = hull[k], hull[k + 1] if k + 1 < count else hull[0]
         ex, ey = ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
         length = math.sqrt(ex * ex + ey * ey)
         if length > 0.0:
-            widest = 0.0
-            for i in hull:
-                widest = max(widest, (ex * (ring[i, 1] - ring[a, 1]) - ey * (ring[i, 0] - ring[a, 0])) / length)
-            least = min(least, widest)
+            if opposite < 0:
+                opposite = _opposite(ring, hull, a, ex, ey)
+            off = ex * (ring[hull[opposite], 1] - ring[a, 1]) - ey * (ring[hull[opposite], 0] - ring[a, 0])
+            for _ in range(count):
+                following = opposite + 1 if opposite + 1 < count else 0
+                more = ex * (ring[hull[following], 1] - ring[a, 1]) - ey * (ring[hull[following], 0] - ring[a, 0])
+                if more < off:
+                    break
+                opposite, off = following, more
+            least = min(least, off / length)
     return least if least < np.inf else 0.0
+
+
+@compiled_plain
+def _opposite(ring: FloatArray, hull: IntArray, start: int, x: float, y: float) -> int:
+    """Which corner of a hull lies farthest to the left of a line from one of its points."""
+    best, most = 0, -np.inf
+    for k in range(len(hull)):
+        off = x * (ring[hull[k], 1] - ring[start, 1]) - y * (ring[hull[k], 0] - ring[start, 0])
+        if off > most:
+            best, most = k, off
+    return best

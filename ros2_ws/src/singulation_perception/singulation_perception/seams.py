@@ -45,7 +45,7 @@ def edges_between(ring: FloatArray, index: IntArray) -> tuple[FloatArray, FloatA
     """
     count = len(index)
     lines, length, fitted = np.empty((count, 3)), np.empty(count), np.zeros(count, dtype=np.int32)
-    points = np.empty_like(ring)
+    room = np.empty((5, len(ring)))
     for k in range(count):
         a, b = index[k], index[k + 1 if k + 1 < count else 0]
         x, y = ring[b, 0] - ring[a, 0], ring[b, 1] - ring[a, 1]
@@ -56,8 +56,8 @@ def edges_between(ring: FloatArray, index: IntArray) -> tuple[FloatArray, FloatA
         if steps >= 2 * _TRIM + 5:
             for i in range(steps - 2 * _TRIM):
                 j = (a + _TRIM + i) % len(ring)
-                points[i, 0], points[i, 1] = ring[j, 0], ring[j, 1]
-            nx, ny, offset = fitted_line(points, np.int64(steps - 2 * _TRIM), y, -x)
+                room[0, i], room[1, i] = ring[j, 0], ring[j, 1]
+            nx, ny, offset = fitted_line(room, np.int64(steps - 2 * _TRIM), y, -x)
             if nx * y - ny * x > 0.97:
                 lines[k, 0], lines[k, 1], lines[k, 2] = nx, ny, offset
                 fitted[k] = 1

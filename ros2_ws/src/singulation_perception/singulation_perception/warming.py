@@ -55,7 +55,7 @@ def _seldom() -> None:
 
 
 def _outline() -> None:
-    outlines_of([_ring_of_an_l()], np.array([(4.0 * _PITCH, *_SCALE)]))
+    outlines_of([_ring_of_an_l()], [np.empty(0, dtype=np.int32)], np.array([(4.0 * _PITCH, *_SCALE)]))
 
 
 # What helper processes begin with: the parts of the warm-up that take longest to compile and come last.

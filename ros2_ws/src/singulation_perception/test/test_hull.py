@@ -6,11 +6,17 @@ from hypothesis import strategies as st
 from singulation_core.polygon import convex_hull, signed_area
 from singulation_perception.hull import hull_indices
 from singulation_perception.jit import compiled
+from singulation_perception.rings import least_width
 
 
 @compiled
 def hull_of(ring):
     return hull_indices(ring)
+
+
+@compiled
+def width_of(ring):
+    return least_width(ring, hull_indices(ring))
 
 
 @given(st.integers(0, 10_000), st.integers(1, 60), st.sampled_from([4, 30, 1_000_000]))
@@ -27,6 +33,20 @@ def test_hull_has_the_corners_of_the_monotone_chain_in_their_order(seed, count, 
     start = int(np.flatnonzero((corners == expected[0]).all(axis=1))[0])
     np.testing.assert_array_equal(np.roll(corners, -start, axis=0), expected)
     assert signed_area(hull) == pytest.approx(signed_area(expected))
+
+
+@given(st.integers(0, 10_000), st.integers(3, 60), st.sampled_from([4, 30, 1_000_000]))
+@settings(max_examples=60, deadline=None)
+def test_the_least_width_is_that_of_the_best_of_all_edges(seed, count, places):
+    points = np.random.default_rng(seed).integers(0, places, (count, 2)).astype(np.float64)
+    hull = convex_hull(points)
+    if len(hull) < 3:
+        return
+    widths = []
+    for start, stop in zip(hull, np.roll(hull, -1, axis=0), strict=True):
+        along = (stop - start) / np.hypot(*(stop - start))
+        widths.append((along[0] * (hull[:, 1] - start[1]) - along[1] * (hull[:, 0] - start[0])).max())
+    assert width_of(points) == pytest.approx(min(widths), rel=1e-9)
 
 
 @pytest.mark.parametrize("points", [np.empty((0, 2)), np.ones((5, 2))], ids=["none", "all in one place"])
