@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from singulation_core import ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled
+from singulation_perception.prefetch import prefetch
 from singulation_perception.raster import Raster
 
 _POINTS = 8_000  # looked at; a plane fitted to them is good to about 1/40 of the noise
@@ -53,6 +54,7 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
     column_step = max(1, int(height * width / row_step / _POINTS))
     limits = np.array(workspace or _EVERYWHERE)
     located, spans, box, valid, inside, everywhere = _pick(cloud, row_step, column_step, np.array(frame[:3]), limits)
+    columns = _columns(spans, row_step, 3 * column_step, height, width)
     looked_at = -(-height // row_step) * -(-width // column_step)
     if valid < min(_FEWEST, looked_at):
         raise SingulationError(
@@ -66,7 +68,6 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
             ResultCode.NOT_METRES,
             f"mean distance {distance:.0f}: the cloud looks like millimetres; clouds are in metres, divide by 1000",
         )
-    columns = _columns(spans, row_step, 3 * column_step, height, width)
     return CloudSample(located, columns, distance, _pitch(box, len(located) * row_step * column_step))
 
 
@@ -75,14 +76,19 @@ def _pitch(box: FloatArray, points: int) -> float:
     return math.sqrt((box[1] - box[0]) * (box[3] - box[2]) / points) if points else 0.0
 
 
+@compiled
 def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: int) -> IntArray:
     """Limits for every row from those of the sampled rows beside it, widened by ``margin``."""
-    beside = np.concatenate((spans[:1], spans, spans[-1:]))
-    first = np.minimum(np.minimum(beside[:-2, 0], beside[1:-1, 0]), beside[2:, 0]) - margin
-    stop = np.maximum(np.maximum(beside[:-2, 1], beside[1:-1, 1]), beside[2:, 1]) + margin
-    first = first.clip(0, width)
-    stop = np.maximum(first, stop.clip(0, width))
-    return np.column_stack((first, stop)).astype(np.int32).repeat(row_step, axis=0)[:height]
+    columns = np.empty((height, 2), dtype=np.int32)
+    for one in range(len(spans)):
+        first, stop = spans[one, 0], spans[one, 1]
+        for beside in range(max(one - 1, 0), min(one + 2, len(spans))):
+            first, stop = min(first, spans[beside, 0]), max(stop, spans[beside, 1])
+        first = min(max(first - margin, 0), width)
+        stop = max(first, min(max(stop + margin, 0), width))
+        for row in range(one * row_step, min((one + 1) * row_step, height)):
+            columns[row, 0], columns[row, 1] = first, stop
+    return columns
 
 
 @compiled
@@ -99,6 +105,9 @@ def _pick(
     x_min, x_max, y_min, y_max = np.inf, -np.inf, np.inf, -np.inf
     for row in range(0, cloud.height, row_step):
         left, right = cloud.width, 0
+        following = min(row + row_step, cloud.height - 1) * cloud.row_step
+        for column in range(0, cloud.width, column_step):
+            prefetch(numbers, following + column * cloud.point_step)
         for column in range(0, cloud.width, column_step):
             at = row * cloud.row_step + column * cloud.point_step
             a, b, c = np.float64(numbers[at]), np.float64(numbers[at + 1]), np.float64(numbers[at + 2])

@@ -14,6 +14,7 @@ from singulation_perception.raster import Raster
 
 _NEAR_HYPOTHESES = 96  # near an expected table, every second point lies on it
 _FREE_HYPOTHESES = 500  # three points of a plane that holds a fifth of the cloud come up four times
+_ASKED = 2_000  # points that hypotheses come from
 _MAX_NOISE = 0.02  # [m] a plane that scatters more is none
 _LEAST_SPREAD = 0.01  # [m] across, to tell a tilt
 
@@ -91,12 +92,12 @@ def _start(
     picked: CloudSample, parameters: SegmentationParameters, previous: TablePlane | None, frame: FloatArray
 ) -> FloatArray:
     """The plane to refine, normal towards the camera; where a table is expected, only points near it are asked."""
-    near = picked.located
-    free = parameters.table_from_camera is None
+    some = picked.located[:: max(1, len(picked.located) // _ASKED)]
+    near, free = some, parameters.table_from_camera is None
     if not free:
-        near = near[np.abs(near[:, 2]) <= 2.0 * parameters.max_table_offset]
-        if len(near) < parameters.min_table_share * len(picked.located):
-            near = picked.located  # then whatever plane there is, to say where it is
+        near = some[np.abs(some[:, 2]) <= 2.0 * parameters.max_table_offset]
+        if len(near) < parameters.min_table_share * len(some):
+            near = some  # then whatever plane there is, to say where it is
     last = None if previous is None else previous.camera_plane @ inverse(frame)
     if free:
         plane = best_plane(near, _FREE_HYPOTHESES, _free_reach(picked), last)
