@@ -54,13 +54,14 @@ def _painted(
 ) -> IntArray:
     point = np.empty(first[-1], dtype=np.int32)
     for i in range(len(point)):
-        point[i] = -1
+        point[np.uintp(i)] = -1
     for run in range(len(runs)):
         k = image_of_face[face[run]]
         if k >= 0:
-            at = first[k] + (runs[run, ROW] - box[k, 0]) * box[k, 3] + runs[run, START] - box[k, 1]
+            at = np.uintp(first[k] + (runs[run, ROW] - box[k, 0]) * box[k, 3] + runs[run, START] - box[k, 1])
+            number = np.int32(runs[run, FIRST])
             for i in range(runs[run, STOP] - runs[run, START]):
-                point[at + i] = runs[run, FIRST] + i
+                point[at + np.uintp(i)] = number + np.int32(i)
     return point
 
 

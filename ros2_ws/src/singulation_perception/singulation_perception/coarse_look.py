@@ -69,18 +69,21 @@ def _mark(
     marks: Marks,
 ) -> None:
     """Sets the marks, one row and one column further on, of the blocks that show something."""
-    levels = np.empty(cloud.width, dtype=np.float32)
+    levels = np.empty(cloud.width + BLOCK, dtype=np.float32)
     nowhere = pose[2, 3]  # height of (0, 0, 0), which is no point
     for row in range(0, cloud.height, stride):
-        left: int = columns[row, 0] + np.int64(0)
-        right: int = columns[row, 1] + np.int64(0)
-        coordinates(cloud, row, left, pose, HEIGHT, levels, right - left)
-        for block in range(left // BLOCK, -(-right // BLOCK)):
-            some = 0
-            for i in range(max(block * BLOCK, left) - left, min((block + 1) * BLOCK, right) - left):
-                some += (levels[i] > lowest) & (levels[i] != nowhere)
+        first = np.int64(columns[row, 0]) // BLOCK  # whole blocks: a known length makes vector instructions
+        count = np.int64(columns[row, 1]) - first * BLOCK
+        coordinates(cloud, row, first * BLOCK, pose, HEIGHT, levels, count)
+        for i in range(count, -(-count // BLOCK) * BLOCK):
+            levels[i] = -np.inf
+        for block in range(-(-count // BLOCK)):
+            some, base = 0, np.uintp(block * BLOCK)
+            for i in range(BLOCK):
+                level = levels[base + np.uintp(i)]
+                some += (level > lowest) & (level != nowhere)
             if some > 0:
-                marks[row // stride + 1, block + 1] = 1
+                marks[row // stride + 1, first + block + 1] = 1
 
 
 @compiled_part_sums

@@ -68,7 +68,8 @@ def levels_of(
             for k in range(begin[one], begin[one + 1], every):
                 run = order[k]
                 for i in range(runs[run, FIRST], runs[run, FIRST] + runs[run, STOP] - runs[run, START]):
-                    parts[np.uintp(int(xyz[i, 2] * per_width) + (i & _LAST_PART) * bins)] += 1
+                    height = xyz[np.uintp(i), 2] * per_width
+                    parts[np.uintp(int(height) + (i & _LAST_PART) * bins)] += 1
             for i in range(bins):
                 for part in range(1, _PARTS):
                     parts[i] += parts[part * bins + i]
