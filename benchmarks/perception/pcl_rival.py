@@ -80,6 +80,11 @@ class PclRival:
         np.ascontiguousarray(points, np.float32).tofile(path)
         self._ask(f"load {path}")
 
+    def convert(self) -> tuple[float, float]:
+        """Processor and wall milliseconds from a message with these points to PCL's own cloud."""
+        processor, wall = self._ask("convert").split()
+        return float(processor), float(wall)
+
     def pipeline(
         self,
         leaf: float,

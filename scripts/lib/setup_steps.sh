@@ -48,7 +48,7 @@ ensure_system_packages() { # route
 install_packages() { # names, separated by blanks
   local missing=$1 command
   [[ -n ${missing// /} ]] || return 0
-  command="apt-get update && apt-get install -y --no-install-recommends ${missing% }"
+  command="apt-get update && apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=120 ${missing% }"
   if [[ $SYSTEM_PACKAGES == install ]] && command -v apt-get >/dev/null; then
     if [[ $(id -u) == 0 ]]; then
       say "installing Debian/Ubuntu packages: $missing"

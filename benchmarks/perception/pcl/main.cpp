@@ -1,5 +1,6 @@
 // A rival that is asked line by line on its standard input, so that both sides take turns on the same machine:
 //   load POINTS                    float32 x y z of every point from a file, invalid ones as NaN
+//   convert                        the same points from a message into PCL's own cloud, as every PCL node begins
 //   pipeline LEAF TOLERANCE MIN PASS_THROUGH X_MIN X_MAX Y_MIN Y_MAX M00 .. M23 (table_from_camera, by rows)
 //   clusters TOLERANCE SORTED OUT  labels as int32 into a file
 // Each answer is one line: processor milliseconds of this thread, wall milliseconds, then what was found.
@@ -12,6 +13,9 @@
 #include <iostream>
 #include <limits>
 #include <sstream>
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/conversions.h>
 
 #include "pipeline.hpp"
 
@@ -31,20 +35,39 @@ void timed(std::ostream& answer, const std::function<void()>& work) {
          << std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - wall).count();
 }
 
-Cloud::Ptr loaded(const std::string& path) {
+pcl::PCLPointCloud2 message_from(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) throw std::runtime_error("cannot open " + path);
-  std::vector<float> numbers(static_cast<std::size_t>(file.tellg()) / sizeof(float));
+  pcl::PCLPointCloud2 message;
+  message.data.resize(static_cast<std::size_t>(file.tellg()));
   file.seekg(0);
-  file.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(float)));
-  auto cloud = pcl::make_shared<Cloud>();
-  cloud->reserve(numbers.size() / 3);
-  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
-    cloud->emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  file.read(reinterpret_cast<char*>(message.data.data()), static_cast<std::streamsize>(message.data.size()));
+  for (const auto* name : {"x", "y", "z"}) {
+    pcl::PCLPointField field;
+    field.name = name;
+    field.offset = static_cast<std::uint32_t>(message.fields.size() * sizeof(float));
+    field.datatype = pcl::PCLPointField::FLOAT32;
+    field.count = 1;
+    message.fields.push_back(field);
   }
-  cloud->is_dense = false;
-  return cloud;
+  message.point_step = 3 * sizeof(float);
+  message.height = 1;
+  message.width = static_cast<std::uint32_t>(message.data.size() / message.point_step);
+  message.row_step = message.width * message.point_step;
+  message.is_dense = false;
+  return message;
 }
+
+// What was asked for so far: the message that was loaded and PCL's cloud made of it.
+struct Loaded {
+  pcl::PCLPointCloud2 message;
+  Cloud::Ptr cloud = pcl::make_shared<Cloud>();
+
+  void convert() {
+    cloud = pcl::make_shared<Cloud>();
+    pcl::fromPCLPointCloud2(message, *cloud);
+  }
+};
 
 Recipe recipe_from(std::istream& words) {
   Recipe recipe;
@@ -82,19 +105,22 @@ void clusters(const Cloud::Ptr& cloud, std::istream& words, std::ostream& answer
       .write(reinterpret_cast<const char*>(labels.data()), static_cast<std::streamsize>(labels.size() * sizeof(int)));
 }
 
-void answer_line(const std::string& line, Cloud::Ptr& cloud, std::ostream& answer) {
+void answer_line(const std::string& line, Loaded& loaded, std::ostream& answer) {
   std::istringstream words(line);
   std::string command;
   words >> command;
   if (command == "load") {
     std::string path;
     words >> path;
-    cloud = loaded(path);
-    answer << cloud->size();
+    loaded.message = message_from(path);
+    loaded.convert();
+    answer << loaded.cloud->size();
+  } else if (command == "convert") {
+    timed(answer, [&] { loaded.convert(); });
   } else if (command == "pipeline") {
-    pipeline(cloud, words, answer);
+    pipeline(loaded.cloud, words, answer);
   } else if (command == "clusters") {
-    clusters(cloud, words, answer);
+    clusters(loaded.cloud, words, answer);
   } else {
     throw std::runtime_error("unknown command " + command);
   }
@@ -103,12 +129,12 @@ void answer_line(const std::string& line, Cloud::Ptr& cloud, std::ostream& answe
 }  // namespace
 
 int main() {
-  Cloud::Ptr cloud(new Cloud);
+  Loaded loaded;
   for (std::string line; std::getline(std::cin, line);) {
     std::ostringstream answer;
     answer.precision(9);
     try {
-      answer_line(line, cloud, answer);
+      answer_line(line, loaded, answer);
       std::cout << "ok " << answer.str() << std::endl;
     } catch (const std::exception& error) {
       std::cout << "error " << error.what() << std::endl;

@@ -93,9 +93,7 @@ def _suspects(faces: Faces, chosen: IntArray, noise: float) -> dict[int, Suspect
     usual = median((holes / np.maximum(count, 1)).tolist()) * count
     grooved = holes - usual - 3.0 * np.sqrt(usual) > _GROOVE * np.sqrt(count)
     uneven = faces.scatter[chosen] > _UNEVEN * noise
-    return {
-        k: Suspects(bool(grooved[k]), bool(uneven[k]), noise) for k in np.flatnonzero(grooved | uneven).tolist()
-    }
+    return {k: Suspects(bool(grooved[k]), bool(uneven[k]), noise) for k in np.flatnonzero(grooved | uneven).tolist()}
 
 
 def _with_size_doubts(blocks: list[FoundBlock], max_extent: float | None) -> list[FoundBlock]:

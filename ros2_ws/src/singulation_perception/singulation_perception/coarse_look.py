@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_perception.jit import compiled_part_sums, compiled_sums
+from singulation_perception.prefetch import LINE, prefetch
 from singulation_perception.raster import Raster
 
 X, Y, HEIGHT = np.int64(0), np.int64(1), np.int64(2)  # all of one kind, so that what takes them is compiled once
@@ -74,6 +75,9 @@ def _mark(
     for row in range(0, cloud.height, stride):
         first = np.int64(columns[row, 0]) // BLOCK  # whole blocks: a known length makes vector instructions
         count = np.int64(columns[row, 1]) - first * BLOCK
+        ahead = min(row + stride, cloud.height - 1) * cloud.row_step + first * BLOCK * cloud.point_step
+        for at in range(0, count * cloud.point_step, LINE):
+            prefetch(cloud.numbers, ahead + at)
         coordinates(cloud, row, first * BLOCK, pose, HEIGHT, levels, count)
         for i in range(count, -(-count // BLOCK) * BLOCK):
             levels[i] = -np.inf

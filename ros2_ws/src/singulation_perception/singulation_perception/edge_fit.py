@@ -141,10 +141,10 @@ def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> NDArray
     one, two = np.uintp(1), np.uintp(2)
     for k in range(len(lines)):
         a, b, c = lines[k, 0], lines[k, 1], lines[k, 2]
-        for n in range(len(ring)):
-            i = np.uintp(n)
-            distance = abs(c - a * points[two * i] - b * points[two * i + one])
-            closer = distance < nearest[i]
-            edge[i] = k if closer else edge[i]
-            nearest[i] = distance if closer else nearest[i]
+        for i in range(len(ring)):
+            at = np.uintp(i)
+            distance = abs(c - a * points[two * at] - b * points[two * at + one])
+            closer = distance < nearest[at]
+            edge[at] = np.int64(k) if closer else edge[at]
+            nearest[at] = distance if closer else nearest[at]
     return edge

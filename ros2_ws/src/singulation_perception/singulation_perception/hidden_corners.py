@@ -48,7 +48,8 @@ def with_hidden_corners(blocks: list[FoundBlock], faces: FaceBlocks, step: float
 def _completed(block: FoundBlock, upper: FoundBlock, faces: FaceBlocks, step: float) -> FoundBlock:
     """A low block with the corners that one taller neighbour hides."""
     loose = _LOOSE * faces.pitch(block.face)
-    reach = reach_of_shadows(faces.view, block.shape.x, block.shape.y, block.height) * (upper.height - block.height) + loose
+    per_height = reach_of_shadows(faces.view, block.shape.x, block.shape.y, block.height)
+    reach = per_height * (upper.height - block.height) + loose
     outline, k = np.ascontiguousarray(block.outline), 0
     completed = False
     while True:

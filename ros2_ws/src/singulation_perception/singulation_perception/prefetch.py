@@ -14,7 +14,7 @@ from numba.extending import intrinsic
 LINE = 16  # numbers of four bytes in what is fetched at once
 
 
-@intrinsic  # type: ignore[untyped-decorator]  # Numba has no types
+@intrinsic
 def prefetch(_: Any, numbers: Any, index: Any) -> Any:
     """Begins to fetch ``numbers[index]``, a one-dimensional contiguous array's; a wrong index does no harm."""
 
@@ -24,7 +24,8 @@ def prefetch(_: Any, numbers: Any, index: Any) -> Any:
         word = ir.IntType(32)
         kind = ir.FunctionType(ir.VoidType(), (cgutils.voidptr_t, word, word, word))
         function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
-        builder.call(function, [place, word(0), word(3), word(1)])  # to read, into every cache, data
+        read, second_cache, data = word(0), word(2), word(1)  # more can be under way than to the first cache
+        builder.call(function, [place, read, second_cache, data])
         return context.get_dummy_value()
 
     return types.void(numbers, types.intp), generate
