@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from singulation_core import InvalidInputError
 from singulation_perception.cell_links import labelled, link_cells
-from singulation_perception.grid_columns import bounds, cells_of
+from singulation_perception.cell_runs import bounds
+from singulation_perception.grid_columns import cells_of
 
 IntArray = NDArray[np.int32]
 
@@ -62,9 +63,10 @@ def _clusters(
     sizes: tuple[int, int],
 ) -> IntArray:
     """Labels of finite points between ``low`` and ``high``."""
-    cells = cells_of(cloud, tolerance, low, high)
-    component, count = link_cells(cloud, cells, np.float32(tolerance * tolerance))
-    return np.asarray(labelled(cells.begin, component, _ranks(count, *sizes)))
+    squared = np.float32(tolerance * tolerance)
+    cells = cells_of(cloud, tolerance, squared, low, high)
+    component, count = link_cells(cloud, cells, squared)
+    return np.asarray(labelled(cells.begin, cells.of_run, component, _ranks(count, *sizes)))
 
 
 def _ranks(points: NDArray[np.int64], min_size: int, max_size: int) -> IntArray:

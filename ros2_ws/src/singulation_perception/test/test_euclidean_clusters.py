@@ -81,3 +81,27 @@ def test_a_cloud_too_wide_for_a_table_of_columns():
     points = np.random.default_rng(1).uniform(0.0, 20.0, (3000, 3)).astype(np.float32)
     points[1500:] = points[:1500] + np.float32(0.002)
     assert partition(euclidean_clusters(points, 0.005)) == reference(points, 0.005)
+
+
+@given(st.integers(0, 10**6), st.floats(0.0012, 0.0025))
+@settings(max_examples=30, deadline=None)
+def test_a_tall_volume_is_cut_into_layers(seed, tolerance):
+    points = np.random.default_rng(seed).uniform(0.0, (0.01, 0.01, 0.1), (6000, 3)).astype(np.float32)
+    assert partition(euclidean_clusters(points, tolerance)) == reference(points, tolerance)
+
+
+@given(st.integers(0, 10**6), st.permutations(range(3)), st.booleans(), st.booleans())
+@settings(max_examples=30, deadline=None)
+def test_the_order_of_the_points_and_the_axes_does_not_matter(seed, axes, backwards, shuffled):
+    random = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(0.0, 0.04, 0.0004), np.arange(0.0, 0.03, 0.0004))
+    z = np.where(x < 0.02, 0.0, 0.004) + 0.2 * y + random.normal(0.0, 0.0002, x.shape)
+    points = np.stack((x, y, z), axis=-1)[random.uniform(size=x.shape) < 0.9][:, axes].astype(np.float32)
+    points = random.permutation(points) if shuffled else points[::-1] if backwards else points
+    assert partition(euclidean_clusters(points, 0.002)) == reference(points, 0.002)
+
+
+@pytest.mark.parametrize("count", [1, 7, 8, 9, 511, 512, 513, 2000])
+def test_many_points_in_one_place(count):
+    points = np.repeat(np.array(((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.1, 0.1, 0.1)), dtype=np.float32), count, axis=0)
+    np.testing.assert_array_equal(euclidean_clusters(points, 0.01), np.repeat((0, 1, 2), count))
