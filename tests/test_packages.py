@@ -21,6 +21,7 @@ ROSDEP = {
     "cv2": "python3-opencv",
     "matplotlib": "python3-matplotlib",
     "numba": "python3-numba",
+    "llvmlite": "python3-numba",  # which is made for it and brings it along
     "numpy": "python3-numpy",
     "PIL": "python3-pil",
     "psutil": "python3-psutil",
