@@ -7,8 +7,11 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage
+from singulation_perception.flat_clouds import flat_cloud
 from singulation_perception.hidden_corners import count_lower
+from singulation_perception.object_points import ObjectPoints
 from singulation_perception.outlines import outlines_of
+from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.raster import raster_of
 from singulation_perception.rings import Scale
 from singulation_perception.segmentation import segment_cloud
@@ -58,8 +61,16 @@ def _outline() -> None:
     outlines_of([_ring_of_an_l()], [np.empty(0, dtype=np.int32)], np.array([(4.0 * _PITCH, *_SCALE)]))
 
 
-# What helper processes begin with: the parts of the warm-up that take longest to compile and come last.
-STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _seldom, _see_points)
+def _cluster() -> None:
+    x, y = np.meshgrid(np.arange(20) * _PITCH, np.arange(20) * _PITCH)
+    xyz = np.stack((x, y, np.full(x.shape, 0.02)), axis=-1).reshape(-1, 3).astype(np.float32)
+    runs = np.array(((0, 0, len(xyz), 0),), dtype=np.int32)
+    flat_cloud(ObjectPoints(xyz, runs, np.zeros((1, 4)), 0), SegmentationParameters(), _PITCH)
+
+
+# What helper processes begin with: the parts of the warm-up that take longest to compile and come last, each by itself,
+# so that none waits for what another process is about to compile.
+STEPS: tuple[Callable[[], None], ...] = (_see_image, _cut, _outline, _cluster, _seldom, _see_points)
 
 
 def _ring_of_an_l() -> FloatArray:
