@@ -134,7 +134,8 @@ def _turn_to_least(moments: FloatArray, plane: FloatArray) -> None:
     """Turns the normal of a plane into the direction in which the moments are least, on the same side.
 
     Inverse iteration with the adjugate, which needs no division: each step leaves the ratio of the least to the middle
-    moment of the error, a millionth for a table. A normal that points on one line would turn anyhow stays.
+    moment of the error, a millionth for a table. Points on one line have no such direction: what comes out then has no
+    spread, and is refused for that.
     """
     for _ in range(_TURNS):
         a, b, c = plane[0], plane[1], plane[2]
