@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from action_msgs.msg import GoalStatus
-from rclpy.action import ActionClient
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.time import Time
 from singulation_msgs.action import ExecutePush
@@ -17,6 +16,7 @@ from std_srvs.srv import Trigger
 
 from singulation_bringup.policy_choice import options_towards
 from singulation_core import Arrangement, ContactMode, Push, ResultCode, SingulationError, conversions
+from singulation_node.action_client import PatientActionClient
 from singulation_node.guard import guarded
 from singulation_node.qos import STATE
 
@@ -66,7 +66,7 @@ class RosCell:
         self._camera = node.create_client(Trigger, trigger, callback_group=group) if trigger else None
         self._clear_view = node.create_client(Trigger, "clear_view", callback_group=group)
         self._arms_in_view = True  # for all that is known
-        self._executor = ActionClient(node, ExecutePush, "execute_push", callback_group=group)
+        self._executor = PatientActionClient(node, ExecutePush, "execute_push", callback_group=group)
 
     def destroy(self) -> None:
         """Give the action client back; the rest is the node's."""

@@ -15,7 +15,7 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from singulation_msgs.action import ExecutePush
 from singulation_msgs.msg import PushOutcome, PushTrajectory
@@ -23,6 +23,7 @@ from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, Push, ResultCode, SingulationError
 from singulation_core.conversions import push_from_msg
+from singulation_node.action_client import PatientActionClient
 from singulation_node.guard import guarded, guarded_service, report_failure
 from singulation_node.main import run_node
 from singulation_node.managed_node import ManagedNode
@@ -126,7 +127,7 @@ class ExecutorNode(ManagedNode[ExecutorSettings]):
             cancel_callback=lambda goal: CancelResponse.ACCEPT,
             result_timeout=round(result_timeout),
         )
-        self._client = ActionClient(self, ExecutePush, "execute_push", callback_group=ReentrantCallbackGroup())
+        self._client = PatientActionClient(self, ExecutePush, "execute_push", callback_group=ReentrantCallbackGroup())
 
     def _execute(self, goal: Any) -> Any:
         """One goal, one result. Runs in a thread of the executor."""

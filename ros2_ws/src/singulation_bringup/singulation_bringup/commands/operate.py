@@ -12,12 +12,12 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from rclpy.action import ActionClient
 from singulation_msgs.action import Singulate
 
 from singulation_bringup.commands.command_node import CommandNode
 from singulation_bringup.commands.status import outcome_text
 from singulation_core import ResultCode, SingulationError, contact_mode, conversions
+from singulation_node.action_client import PatientActionClient
 from singulation_node.main import plain_arguments
 from singulation_planner import POLICIES
 
@@ -35,7 +35,7 @@ def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
             the goal, ``CANCELLED`` on Ctrl-C, once the goal has ended.
     """
     news: list[Any] = []
-    client = ActionClient(command.node, Singulate, "singulate")
+    client = PatientActionClient(command.node, Singulate, "singulate")
     command.wait(client.server_is_ready, timeout, "action singulate")
     sent = client.send_goal_async(goal, feedback_callback=lambda message: news.append(message.feedback))
     try:

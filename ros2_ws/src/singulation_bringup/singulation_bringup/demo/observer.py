@@ -8,11 +8,11 @@ from typing import Any, TypeVar
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.action import ActionClient
 from rclpy.context import Context
 from rclpy.executors import MultiThreadedExecutor
 
 from singulation_core import ResultCode, SingulationError
+from singulation_node.action_client import PatientActionClient
 from singulation_node.guard import guarded, report_failure
 from singulation_node.qos import SENSOR_IN, STATE
 from singulation_node.spinning import spin_until
@@ -112,7 +112,7 @@ class Observer:
         Raises:
             SingulationError: ``TIMEOUT`` if there is no server, ``REJECTED`` if it does not want the goal.
         """
-        client = ActionClient(self.node, kind, name)
+        client = PatientActionClient(self.node, kind, name)
         self.wait(client.server_is_ready, timeout, f"action {name}")
         sent = client.send_goal_async(goal, feedback_callback=lambda message: on_feedback(message.feedback))
         self.wait(sent.done, timeout, f"answer of {name}")
