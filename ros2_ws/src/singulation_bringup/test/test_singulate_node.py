@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
-from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.action import ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -21,6 +21,7 @@ from std_srvs.srv import Trigger
 
 from singulation_bringup.singulate_node import SingulateNode
 from singulation_core import Arrangement, ContactMode, PlanarObject, Push, ResultCode, conversions
+from singulation_node.action_client import PatientActionClient
 from singulation_node.qos import RECORD, STATE
 from singulation_node.testing import Mailbox, spinning, wait_until
 
@@ -100,7 +101,7 @@ def setting(ros_context):
 
 @pytest.fixture
 def ask(setting):
-    client = ActionClient(setting[1], Singulate, "singulate")
+    client = PatientActionClient(setting[1], Singulate, "singulate")
     wait_until(client.server_is_ready, what="singulate")
     feedback = []
 
@@ -208,7 +209,7 @@ def test_a_push_that_takes_too_long_is_stopped_and_looked_at_again(ros_context):
     cell.slow = True
     with spinning(node, cell, threads=8):
         assert node.start()
-        client = ActionClient(cell, Singulate, "singulate")
+        client = PatientActionClient(cell, Singulate, "singulate")
         wait_until(client.server_is_ready, what="singulate")
         for slow, expected in ((True, ResultCode.PUSH_FAILED), (False, ResultCode.OK)):
             cell.slow = slow
@@ -276,7 +277,7 @@ def test_what_is_missing_is_named(ros_context):
     )
     with spinning(node, client_node):
         assert node.start()
-        client = ActionClient(client_node, Singulate, "singulate")
+        client = PatientActionClient(client_node, Singulate, "singulate")
         wait_until(client.server_is_ready, what="singulate")
         future = client.send_goal_async(Singulate.Goal(max_pushes=1, min_gap=0.01))
         wait_until(future.done)

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 from fake_driver import FakeDriver
 from fake_robot import ARMS, HOME, RANGES, SPEEDS, offsets, smooth
-from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from singulation_msgs.action import ExecutePush
 from singulation_msgs.msg import Arrangement, DriverState, PushOutcome, PushTrajectory
 
 from singulation_core.conversions import stamp_of
+from singulation_node.action_client import PatientActionClient
 from singulation_node.qos import LATCHED, STATE
 from singulation_node.testing import Mailbox, wait_until
 from yumi_push_executor.executor_node import ExecutorNode
@@ -92,7 +92,7 @@ class NodeCell:
         self.driver = FakeDriver(context=context)
         self.client = Node("client", context=context)
         self.nodes = (self.executor, self.driver, self.client)
-        self.action = ActionClient(self.client, ExecutePush, "execute_push")
+        self.action = PatientActionClient(self.client, ExecutePush, "execute_push")
         self.outcomes = Mailbox(self.client, PushOutcome, "last_outcome", LATCHED)
         self.objects = self.client.create_publisher(Arrangement, "objects", STATE)
         self.pushes = self.client.create_publisher(PushTrajectory, "push", STATE)

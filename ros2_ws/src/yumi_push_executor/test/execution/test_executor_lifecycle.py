@@ -9,7 +9,6 @@ from geometry_msgs.msg import Point32, Polygon
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from node_cell import NodeCell
-from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
@@ -18,6 +17,7 @@ from singulation_msgs.msg import Arrangement, DriverState, PlanarObject
 from std_srvs.srv import Trigger
 
 from singulation_core import InvalidInputError, ResultCode
+from singulation_node.action_client import PatientActionClient
 from singulation_node.qos import STATE
 from singulation_node.testing import Mailbox, call, spinning, wait_until
 from yumi_push_executor.executor_settings import ExecutorSettings
@@ -81,7 +81,7 @@ def test_a_node_that_is_shut_down_stops_its_push_first(cell):
 def test_a_push_goes_on_without_its_client_and_the_next_client_is_served(cell):
     lonely = Node("lonely", context=cell.client.context)
     cell.client.executor.add_node(lonely)
-    action = ActionClient(lonely, ExecutePush, "execute_push")
+    action = PatientActionClient(lonely, ExecutePush, "execute_push")
     wait_until(action.server_is_ready, what="the action")
     future = action.send_goal_async(ExecutePush.Goal(push=cell.push()))
     wait_until(future.done, what="goal response")

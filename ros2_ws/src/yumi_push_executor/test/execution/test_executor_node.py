@@ -166,7 +166,7 @@ def test_what_the_planner_refuses_has_its_code_and_nothing_moves(cell):
     assert (status, ResultCode(result.code)) == (GoalStatus.STATUS_ABORTED, ResultCode.PATH_BLOCKED)
     assert result.message == "block 3 is in the way"
     assert len(cell.driver.trajectories) == orders
-    assert cell.outcomes.messages[-1].message == "block 3 is in the way"
+    wait_until(lambda: cell.outcomes.messages[-1].message == "block 3 is in the way", what="outcome")
 
 
 def test_an_exception_is_an_internal_error_with_its_text(cell):
