@@ -41,7 +41,9 @@ class Recipe:
 RECIPES = {
     "voxel grid 2 mm": Recipe(0.002, 0.004, 20),
     "voxel grid 2 mm, cropped by axes": Recipe(0.002, 0.004, 20, pass_through=True),
-    "voxel grid 2 mm, cropped by axes, from the message": Recipe(0.002, 0.004, 20, True, True),
+    "voxel grid 2 mm, cropped by axes, from the message": Recipe(
+        0.002, 0.004, 20, pass_through=True, from_message=True
+    ),
     "voxel grid 1 mm": Recipe(0.001, 0.003, 60),
     "full resolution": Recipe(0.0, 0.005, 60),
 }

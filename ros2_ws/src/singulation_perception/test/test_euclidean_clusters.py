@@ -6,6 +6,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from singulation_core import InvalidInputError
 from singulation_perception.clustering import euclidean_clusters
 
 
@@ -105,3 +106,10 @@ def test_the_order_of_the_points_and_the_axes_does_not_matter(seed, axes, backwa
 def test_many_points_in_one_place(count):
     points = np.repeat(np.array(((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.1, 0.1, 0.1)), dtype=np.float32), count, axis=0)
     np.testing.assert_array_equal(euclidean_clusters(points, 0.01), np.repeat((0, 1, 2), count))
+
+
+def test_a_tolerance_too_small_to_number_cells_is_refused_and_a_larger_one_works():
+    points = np.array(((0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)), dtype=np.float32)
+    with pytest.raises(InvalidInputError, match=r"tolerance: 1e-07 m is too small for a cloud 1e\+03 m wide"):
+        euclidean_clusters(points, 1e-7)
+    assert euclidean_clusters(points, 0.01).tolist() == [0, 1]
