@@ -1,4 +1,9 @@
-"""How numerical inner loops are compiled."""
+"""How numerical inner loops are compiled.
+
+The first start compiles all of them, and Numba's time goes with the length of the code. So entries for C callers are
+left out everywhere, and entries for Python and a cache of their own where only compiled code calls. Three habits help
+as much: ``math.sqrt`` instead of ``np.sqrt``, ``x * x`` instead of ``x ** 2``, and indices instead of views of rows.
+"""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -7,27 +12,46 @@ from numba import njit
 from numba.core.dispatcher import Dispatcher
 
 from singulation_core.claimed_cache import ClaimedCache
+from singulation_core.late_options import LateOptions, pipeline
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-USUAL = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 
 def compiled(function: Function) -> Function:
     """Compile a function that Python calls and that only reads and writes arrays which its caller holds.
 
     Such a function needs no reference counts. With them, calls that pass two dozen arrays took three quarters of the
-    time of a push; a Numba that does not know the option compiles the same function, only slower.
+    time of a push.
     """
-    return kept(_compiled(function))
+    return _kept(_compiled(function, LateOptions(counting=False)))
+
+
+def compiled_maker(function: Function) -> Function:
+    """As ``compiled``, for a function that makes arrays: it counts references."""
+    return _kept(_compiled(function, LateOptions()))
+
+
+def compiled_sums(function: Function) -> Function:
+    """As ``compiled_maker``, where sums may be added up in any order: that makes vector instructions of them."""
+    return _kept(_compiled(function, LateOptions(any_order=True)))
 
 
 def compiled_part(function: Function) -> Function:
-    """The same for a function that only compiled ones call: it is kept on disk as part of them.
+    """As ``compiled``, for a function that only compiled ones call: it is kept on disk as part of them.
 
-    Without an entry for Python and a cache of its own it compiles in a fraction of the time.
+    Without an entry for Python and a cache of its own it compiles in a fraction of the time. Python must not call it.
     """
-    return _compiled(function, no_cpython_wrapper=True)
+    return _compiled(function, LateOptions(part=True, counting=False))
+
+
+def compiled_part_maker(function: Function) -> Function:
+    """As ``compiled_part``, for a function that makes arrays."""
+    return _compiled(function, LateOptions(part=True))
+
+
+def compiled_part_sums(function: Function) -> Function:
+    """As ``compiled_sums``, for a function that only compiled ones call."""
+    return _compiled(function, LateOptions(part=True, any_order=True))
 
 
 def compiled_inline(function: Function) -> Function:
@@ -36,25 +60,18 @@ def compiled_inline(function: Function) -> Function:
     A call that passes on a few tuples of arrays copies some 200 words; for contacts of two blocks that took a third of
     the time of a push.
     """
-    return _compiled(function, no_cpython_wrapper=True, forceinline=True)
+    return _compiled(function, LateOptions(part=True, inline=True, counting=False))
 
 
-def compiled_maker(function: Function) -> Function:
-    """As ``compiled``, for a function that makes arrays: it counts references."""
-    done: Function = njit(**USUAL)(function)
-    return kept(done)
+def _compiled(function: Function, late: LateOptions) -> Function:
+    done: Function = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, pipeline_class=pipeline(late))(
+        function
+    )
+    return done
 
 
-def kept(function: Function) -> Function:
+def _kept(function: Function) -> Function:
     """Keep on disk what is compiled of a function, in a cache that processes share."""
     if isinstance(function, Dispatcher):  # a plain function where Numba is switched off
         function._cache = ClaimedCache(function.py_func)  # type: ignore[attr-defined]  # where enable_caching puts it
     return function
-
-
-def _compiled(function: Function, **options: bool) -> Function:
-    try:
-        done: Function = njit(**USUAL, **options, _nrt=False)(function)
-    except (KeyError, TypeError):
-        done = njit(**USUAL, **options)(function)
-    return done

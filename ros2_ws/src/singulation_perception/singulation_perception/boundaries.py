@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray
 from singulation_perception.surfaces import Faces
 
@@ -48,7 +48,7 @@ def face_maps(faces: Faces, chosen: IntArray) -> FaceMaps:
     return FaceMaps(chosen, point, first, sizes)
 
 
-@compiled
+@compiled_maker
 def _painted(
     runs: IntArray, face: IntArray, image_of_face: IntArray, first: NDArray[np.int64], box: IntArray
 ) -> IntArray:
@@ -75,7 +75,7 @@ def rims(maps: FaceMaps) -> tuple[IntArray, IntArray]:
     return rim, begin
 
 
-@compiled
+@compiled_maker
 def _followed(point: IntArray, first: NDArray[np.int64], box: IntArray) -> tuple[IntArray, IntArray]:
     pixels = np.empty(4 * len(point), dtype=np.int64)
     begin = np.zeros(len(first), dtype=np.int32)
@@ -95,7 +95,7 @@ def _followed(point: IntArray, first: NDArray[np.int64], box: IntArray) -> tuple
     return rim, begin
 
 
-@compiled_plain
+@compiled_part
 def _follow(point: IntArray, start: int, width: int, rim: NDArray[np.int64]) -> int:
     """Moore tracing from the first pixel of the first row until it is entered the same way again (Jacob's rule)."""
     at, way, first_way, count = start, 6, -1, 0  # came from above

@@ -6,7 +6,7 @@ Byte by byte, finding the ends of the runs of a cloud took as long as computing 
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled_plain
+from singulation_perception.jit import compiled_part
 
 Words = NDArray[np.uint64]
 
@@ -20,7 +20,7 @@ def repeated(value: int) -> np.uint64:
     return np.uint64(value * 0x0101010101010101)
 
 
-@compiled_plain
+@compiled_part
 def end_of(words: Words, first: np.uintp, size: np.uintp, value: np.uint64) -> np.uintp:
     """The first byte from ``first`` on that is another than ``value`` has; ``size`` if there is none.
 

@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_core.jit import compiled_inline
 from singulation_perception.cell_runs import PAD, Cloud, IntArray, Keys, near
 from singulation_perception.grid_columns import Cells
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_inline, compiled_maker, compiled_part, compiled_part_maker
 from singulation_perception.union_find import find_root, unite
 
 _NOTHING, _SEVERAL = -1, -2  # instead of the component of a patch
@@ -14,7 +13,7 @@ _PATCH = 2  # binary logarithm of the columns in a patch, side by side in x; two
 _LABELS = 8  # that are written at once; most runs are shorter
 
 
-@compiled
+@compiled_maker
 def link_cells(cloud: Cloud, cells: Cells, squared: np.float32) -> tuple[IntArray, NDArray[np.int64]]:
     """Component of every cell, in the order of their first points, and how many points each has.
 
@@ -30,7 +29,7 @@ def link_cells(cloud: Cloud, cells: Cells, squared: np.float32) -> tuple[IntArra
     return _numbered(cells.parent, cells.size)
 
 
-@compiled_part
+@compiled_part_maker
 def _patches(parent: IntArray, key: Keys, places: int) -> IntArray:
     """Root of the cells in each patch of columns; points every cell to its root."""
     patches = np.full(places, _NOTHING, dtype=np.int32)
@@ -42,7 +41,7 @@ def _patches(parent: IntArray, key: Keys, places: int) -> IntArray:
     return patches
 
 
-@compiled_plain
+@compiled_part
 def _link(cloud: Cloud, cells: Cells, patches: IntArray, squared: np.float32) -> None:
     """Unites the cells that touch one of their column or of the later neighbours."""
     parent, key, level, table, chained = cells.parent, cells.key, cells.level, cells.table, cells.chained
@@ -91,7 +90,7 @@ def _touch(cloud: Cloud, cells: Cells, a: int, b: np.int64, squared: np.float32)
     return False
 
 
-@compiled_part
+@compiled_part_maker
 def _numbered(parent: IntArray, size: IntArray) -> tuple[IntArray, NDArray[np.int64]]:
     component, sizes = np.empty(len(parent), dtype=np.int32), np.zeros(len(parent), dtype=np.int64)
     count = 0
@@ -105,7 +104,7 @@ def _numbered(parent: IntArray, size: IntArray) -> tuple[IntArray, NDArray[np.in
     return component, sizes[:count]
 
 
-@compiled
+@compiled_maker
 def labelled(begin: IntArray, of_run: IntArray, component: IntArray, label: IntArray) -> IntArray:
     """(n,) label of each point from those of the components of the cells."""
     labels = np.empty(begin[-1] + _LABELS, dtype=np.int32)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part
 
 IntArray = NDArray[np.int32]
 Keys = NDArray[np.int64]
@@ -15,7 +15,7 @@ _CHUNK = 96  # numbers that are compared with as many bounds at once; a multiple
 _BLOCK = 512  # points that are turned into numbers of cells at once
 
 
-@compiled
+@compiled_maker
 def bounds(cloud: Cloud) -> tuple[FloatArray, FloatArray, bool]:
     """Least and greatest coordinates, (3,) each, and whether all are finite; if not, the bounds mean nothing.
 
@@ -37,7 +37,7 @@ def bounds(cloud: Cloud) -> tuple[FloatArray, FloatArray, bool]:
     return least[:3].astype(np.float64), greatest[:3].astype(np.float64), finite
 
 
-@compiled
+@compiled_maker
 def runs_of(cloud: Cloud, low: FloatArray, scale: float, width: int) -> tuple[IntArray, Keys, IntArray]:
     """Runs of points that follow each other in one cell.
 
@@ -71,7 +71,7 @@ def runs_of(cloud: Cloud, low: FloatArray, scale: float, width: int) -> tuple[In
     return begin[: count + np.uintp(1)], key[:count], depth[:count]
 
 
-@compiled_plain
+@compiled_part
 def near(cloud: Cloud, i: int, j: int, squared: np.float32) -> bool:
     """Whether two points are linked."""
     dx, dy, dz = cloud[i, 0] - cloud[j, 0], cloud[i, 1] - cloud[j, 1], cloud[i, 2] - cloud[j, 2]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from singulation_core import ResultCode, SingulationError
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.prefetch import prefetch
 from singulation_perception.raster import Raster
 
@@ -76,7 +76,7 @@ def _pitch(box: FloatArray, points: int) -> float:
     return math.sqrt((box[1] - box[0]) * (box[3] - box[2]) / points) if points else 0.0
 
 
-@compiled
+@compiled_maker
 def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: int) -> IntArray:
     """Limits for every row from those of the sampled rows beside it, widened by ``margin``."""
     columns = np.empty((height, 2), dtype=np.int32)
@@ -91,7 +91,7 @@ def _columns(spans: IntArray, row_step: int, margin: int, height: int, width: in
     return columns
 
 
-@compiled
+@compiled_maker
 def _pick(
     cloud: Raster, row_step: int, column_step: int, frame: FloatArray, limits: FloatArray
 ) -> tuple[FloatArray, IntArray, FloatArray, int, float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part
+from singulation_perception.jit import compiled_part_maker
 
 Flags = NDArray[np.bool_]
 
@@ -57,7 +57,7 @@ class Evidence:
         return np.minimum(1.0, value * _DOUBT**doubts)
 
 
-@compiled_part
+@compiled_part_maker
 def supported_share(outline: FloatArray, ring: FloatArray, reach: float, pitch: float) -> float:
     """Share of the length of an outline with points of a ring within ``reach`` [m]."""
     supported, total = 0, 0

@@ -10,7 +10,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.face_image import FaceImage, to_table
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.object_points import IntArray
 
 _FEWEST = 8  # missing points of a groove
@@ -37,7 +37,7 @@ def groove_line(image: FaceImage, pitch: float) -> FloatArray | None:
     return line
 
 
-@compiled
+@compiled_maker
 def _holes(point: IntArray) -> FloatArray:
     """(h, 2) rows and columns of pixels without a point between the first and the last point of row and column."""
     rows, columns = point.shape
@@ -63,7 +63,7 @@ def _holes(point: IntArray) -> FloatArray:
     return holes[:count]
 
 
-@compiled
+@compiled_maker
 def _best_line(places: FloatArray, pairs: IntArray, width: float) -> tuple[FloatArray, int, float]:
     """Line through two places with most places near it, how many, and how far apart the outermost are."""
     best = np.zeros(3)

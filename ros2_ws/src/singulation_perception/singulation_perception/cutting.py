@@ -6,7 +6,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale, concave_area, least_width, ring_area
 
@@ -19,7 +19,7 @@ _CUT, _LENGTH = 0.003, 0.35  # [m] cost of every cut, and per metre of it
 _THIN, _THIN_WIDTH = 0.02, 0.025  # [m] cost of a piece without width, and the width that costs nothing
 
 
-@compiled_part
+@compiled_part_maker
 def piece(
     ring: FloatArray,
     first: int,
@@ -64,7 +64,7 @@ def piece(
     return out[:count]
 
 
-@compiled_plain
+@compiled_part
 def _overshoot(
     ring: FloatArray, end: int, step: int, steps: int, line: tuple[float, float, float, float], way: float, scale: Scale
 ) -> float:
@@ -97,7 +97,7 @@ def _overshoot(
     return beyond if scale.pitch < beyond < _STRAY * scale.pitch else 0.0
 
 
-@compiled
+@compiled_maker
 def both_pieces(
     ring: FloatArray, i: int, j: int, line: tuple[float, float, float, float], scale: Scale
 ) -> tuple[FloatArray, FloatArray]:
@@ -105,13 +105,13 @@ def both_pieces(
     return piece(ring, j, i, line, 1.0, scale), piece(ring, i, j, line, -1.0, scale)
 
 
-@compiled
+@compiled_maker
 def concave_cost(ring: FloatArray, roughness: float) -> float:
     """What a ring costs that is left as it is [m]: 0 if it is convex but for its roughness."""
     return concave_area(ring, hull_indices(ring), roughness) * PER_AREA
 
 
-@compiled_part
+@compiled_part_maker
 def estimated(ring: FloatArray, cuts: FloatArray, index: IntArray, scale: Scale) -> FloatArray:
     """(c, 3): what the seam, what thin pieces, and what both and the remaining concave parts cost.
 
@@ -138,7 +138,7 @@ def estimated(ring: FloatArray, cuts: FloatArray, index: IntArray, scale: Scale)
     return costs
 
 
-@compiled_part
+@compiled_part_maker
 def _corner_piece(ring: FloatArray, index: IntArray, first: int, last: int) -> FloatArray:
     """Corners of a ring from one point to another, both included."""
     size = len(ring)
@@ -161,7 +161,7 @@ def _corner_piece(ring: FloatArray, index: IntArray, first: int, last: int) -> F
     return part[: count + 1]
 
 
-@compiled_plain
+@compiled_part
 def _corner_pockets(part: FloatArray, hull: IntArray, roughness: float) -> float:
     """As ``concave_area``, for a polygon of few corners."""
     total = 0.0
@@ -181,7 +181,7 @@ def _corner_pockets(part: FloatArray, hull: IntArray, roughness: float) -> float
     return total
 
 
-@compiled
+@compiled_maker
 def left_concave(first: FloatArray, second: FloatArray, scale: Scale) -> float:
     """What remains concave in two pieces [m]; infinite if one of them is too small to be a block."""
     left = 0.0
@@ -192,7 +192,7 @@ def left_concave(first: FloatArray, second: FloatArray, scale: Scale) -> float:
     return left
 
 
-@compiled
+@compiled_maker
 def chord(ring: FloatArray, nx: float, ny: float, offset: float) -> tuple[int, int]:
     """Points of the ring at the ends of the longest piece of the line n . p = offset inside it; -1, -1 if outside.
 
@@ -219,7 +219,7 @@ def chord(ring: FloatArray, nx: float, ny: float, offset: float) -> tuple[int, i
     return first, last
 
 
-@compiled
+@compiled_maker
 def along(ring: FloatArray, i: int, j: int, nx: float, ny: float, offset: float) -> tuple[float, float, float, float]:
     """Point and unit direction, from point i to point j, of the line n . p = offset."""
     sense = 1.0 if (ring[j, 1] - ring[i, 1]) * nx - (ring[j, 0] - ring[i, 0]) * ny > 0.0 else -1.0

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part, compiled_part_sums
+from singulation_perception.jit import compiled_part_maker, compiled_part_sums
 
 _INSIDE_WEIGHT = 0.1
 _ROUNDS = 8
@@ -68,7 +68,7 @@ def fitted_line(room: FloatArray, count: int, normal_x: float, normal_y: float) 
     return nx, ny, nx * (cx - level * normal_x) + ny * (cy - level * normal_y)
 
 
-@compiled_part
+@compiled_part_maker
 def edges_of(polygon: FloatArray) -> FloatArray:
     """(k, 3) outward unit normals and offsets of the edges of a counter-clockwise polygon."""
     lines = np.empty((len(polygon), 3))
@@ -81,7 +81,7 @@ def edges_of(polygon: FloatArray) -> FloatArray:
     return lines
 
 
-@compiled_part
+@compiled_part_maker
 def corners_of(lines: FloatArray, growth: float) -> tuple[FloatArray, bool]:
     """Corners between consecutive lines, all moved outwards by ``growth``; false if two of them have none.
 
@@ -99,7 +99,7 @@ def corners_of(lines: FloatArray, growth: float) -> tuple[FloatArray, bool]:
     return corners, True
 
 
-@compiled_part
+@compiled_part_maker
 def refitted(ring: FloatArray, polygon: FloatArray, reach: float, margin: float) -> FloatArray:
     """Lines (k, 3) through the points of the ring that belong to each edge of the polygon.
 
@@ -131,7 +131,7 @@ def refitted(ring: FloatArray, polygon: FloatArray, reach: float, margin: float)
     return fitted
 
 
-@compiled_part
+@compiled_part_maker
 def _nearest_edges(ring: FloatArray, lines: FloatArray, reach: float) -> NDArray[np.int64]:
     """The nearest edge of each point, -1 if none is near; edge after edge, which makes vector instructions."""
     edge, nearest = np.empty(len(ring), dtype=np.int64), np.empty(len(ring))

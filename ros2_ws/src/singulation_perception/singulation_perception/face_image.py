@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.object_points import IntArray
 
 
@@ -47,7 +47,7 @@ def face_image(
     return FaceImage(corner, point, xyz, _fitted_map(ring, pixels, corner))
 
 
-@compiled
+@compiled_maker
 def _fitted_map(ring: FloatArray, pixels: IntArray, corner: IntArray) -> FloatArray:
     """Least squares (2, 3): from places to rows and columns of the image."""
     count = max(len(ring), 1)

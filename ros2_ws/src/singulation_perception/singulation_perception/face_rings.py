@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import concave_area, least_width
 
@@ -86,7 +86,7 @@ def _obliqueness(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray, camer
     return np.asarray(np.hypot(way[:, 0], way[:, 1]) / np.maximum(np.abs(way[:, 2]), 1e-3))
 
 
-@compiled
+@compiled_maker
 def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple[FloatArray, IntArray, FloatArray]:
     points = np.empty((len(rim), 2))
     pixels = np.empty((len(rim), 2), dtype=np.int32)
@@ -106,7 +106,7 @@ def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple
     return points, pixels, area
 
 
-@compiled
+@compiled_maker
 def _measures(
     points: FloatArray, begin: IntArray, area: FloatArray, roughness: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, IntArray, IntArray]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.clustering import euclidean_clusters
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.object_points import FIRST, HIGH, LOW, START, STOP, IntArray, ObjectPoints, widen
 from singulation_perception.parameters import SegmentationParameters
 
@@ -95,7 +95,7 @@ def _cells(xyz: Points, kept: NDArray[np.bool_], size: float) -> tuple[NDArray[n
     return cell, (rows, columns)
 
 
-@compiled
+@compiled_maker
 def _drawn(
     xyz: Points, clusters: IntArray, cell: NDArray[np.int64], rows: int, columns: int, step: np.float32
 ) -> tuple[Points, IntArray, FloatArray, IntArray]:
@@ -126,7 +126,7 @@ def _drawn(
     return points[:count], runs[: run + 1], spans[: run + 1], cluster[: run + 1]
 
 
-@compiled
+@compiled_maker
 def _places(runs: IntArray, count: int) -> IntArray:
     places = np.empty(count, dtype=np.int32)
     for run in range(len(runs)):

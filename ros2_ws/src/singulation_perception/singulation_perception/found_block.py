@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray, inward_half_planes
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.shapes import Shape, shape_of
 
@@ -56,7 +56,7 @@ def shares(point: IntArray, xyz: NDArray[np.float32], outlines: list[FloatArray]
     return counts, heights / np.maximum(counts, 1)
 
 
-@compiled_plain
+@compiled_part
 def deepest(planes: FloatArray, first: NDArray[np.int64], begin: int, end: int, x: float, y: float) -> int:
     """Which of the outlines ``begin`` to ``end`` a place is deepest inside, or nearest to if it is in none."""
     best, depth = begin, -np.inf
@@ -71,7 +71,7 @@ def deepest(planes: FloatArray, first: NDArray[np.int64], begin: int, end: int, 
     return best
 
 
-@compiled
+@compiled_maker
 def _shares(
     point: IntArray, xyz: NDArray[np.float32], planes: FloatArray, first: NDArray[np.int64]
 ) -> tuple[IntArray, FloatArray]:

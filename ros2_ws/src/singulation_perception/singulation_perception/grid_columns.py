@@ -12,9 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from singulation_core import InvalidInputError
-from singulation_core.jit import compiled_inline
 from singulation_perception.cell_runs import PAD, Cloud, FloatArray, IntArray, Keys, near, runs_of
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_inline, compiled_maker
 from singulation_perception.union_find import find_root, unite
 
 _EDGE = 0.99999 / np.sqrt(3.0)  # a little under 1: float32 rounding must not part the points of a cell
@@ -108,7 +107,7 @@ def _offsets(columns: tuple[tuple[int, int], ...], width: int, layer: int) -> Ke
     return np.array([[x + y * width + z * layer for x, y in columns] for z in (-1, 0, 1)], dtype=np.int64)
 
 
-@compiled
+@compiled_maker
 def _cells(
     cloud: Cloud, begin: IntArray, key: Keys, depth: IntArray, table: IntArray, grid: Grid, squared: np.float32
 ) -> Cells:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 from singulation_perception.raster import Raster
 from singulation_perception.rings import pockets
@@ -73,7 +73,7 @@ def without_hidden(ring: FloatArray, pixels: IntArray, roughness: float, view: V
     return ring if keep.all() else np.asarray(ring[keep])
 
 
-@compiled
+@compiled_maker
 def _in_sight(
     ring: FloatArray,
     pixels: IntArray,
@@ -103,7 +103,7 @@ def _in_sight(
     return keep
 
 
-@compiled_plain
+@compiled_part
 def _drop_scattered(keep: NDArray[np.bool_]) -> None:
     """Points left over between hidden pockets, too few for a rim: the wall of what is taller has some at any height."""
     size = len(keep)
@@ -117,7 +117,7 @@ def _drop_scattered(keep: NDArray[np.bool_]) -> None:
                     keep[(first + i) % size] = False
 
 
-@compiled_part
+@compiled_part_maker
 def _look(
     cloud: Raster,
     plane: NDArray[np.float32],

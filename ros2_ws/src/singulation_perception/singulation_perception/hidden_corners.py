@@ -16,7 +16,7 @@ from singulation_perception.confidence import COMPLETED
 from singulation_perception.face_blocks import FaceBlocks
 from singulation_perception.found_block import FoundBlock
 from singulation_perception.hidden import reach_of_shadows
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.piles import near_pairs
 from singulation_perception.raster import Raster
@@ -53,7 +53,7 @@ def _completed(block: FoundBlock, upper: FoundBlock, faces: FaceBlocks, step: fl
     outline, k = np.ascontiguousarray(block.outline), 0
     completed = False
     while True:
-        k, x, y = _shadowed_edge(outline, np.ascontiguousarray(upper.outline), reach, loose, k)
+        k, x, y = shadowed_edge(outline, np.ascontiguousarray(upper.outline), reach, loose, k)
         if k < 0:
             return block.redrawn(outline, COMPLETED) if completed else block
         others = (k + 1 + np.arange(len(outline) - 1)) % len(outline)  # the end of the edge comes first
@@ -63,8 +63,8 @@ def _completed(block: FoundBlock, upper: FoundBlock, faces: FaceBlocks, step: fl
             k += 1
 
 
-@compiled
-def _shadowed_edge(
+@compiled_maker
+def shadowed_edge(
     outline: FloatArray, caster: FloatArray, reach: float, loose: float, begin: int
 ) -> tuple[int, float, float]:
     """The next edge of a low block, from edge ``begin`` on, that may be where the shadow of something taller ends.
@@ -98,7 +98,7 @@ def _shadowed_edge(
     return -1, 0.0, 0.0
 
 
-@compiled_plain
+@compiled_part
 def _depth_inside(outline: FloatArray, x: float, y: float) -> float:
     """How deep inside an outline a place lies [m]; negative outside."""
     least = np.inf
@@ -109,7 +109,7 @@ def _depth_inside(outline: FloatArray, x: float, y: float) -> float:
     return least
 
 
-@compiled_plain
+@compiled_part
 def _casts(
     caster: FloatArray, x: float, y: float, ux: float, uy: float, length: float, reach: float, loose: float
 ) -> bool:
@@ -138,7 +138,7 @@ def _is_unseen(
     return bool(lower < _SEEN * _STEPS * _STEPS)
 
 
-@compiled
+@compiled_maker
 def count_lower(
     cloud: Raster,
     plane: NDArray[np.float32],

@@ -3,11 +3,11 @@
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 
 
-@compiled_part
+@compiled_part_maker
 def hull_indices(ring: FloatArray) -> IntArray:
     """Which points of a ring are corners of its convex hull, counter-clockwise (Quickhull; Barber et al. 1996).
 
@@ -50,12 +50,12 @@ def hull_indices(ring: FloatArray) -> IntArray:
     return hull[:count]
 
 
-@compiled_plain
+@compiled_part
 def _push(stack: IntArray, place: int, a: int, b: int, begin: int, end: int) -> None:
     stack[place, 0], stack[place, 1], stack[place, 2], stack[place, 3] = a, b, begin, end
 
 
-@compiled_plain
+@compiled_part
 def _farthest(ring: FloatArray, point: IntArray, a: int, b: int, begin: int, end: int) -> int:
     ax, ay = ring[a, 0], ring[a, 1]
     ex, ey = ring[b, 0] - ax, ring[b, 1] - ay
@@ -68,7 +68,7 @@ def _farthest(ring: FloatArray, point: IntArray, a: int, b: int, begin: int, end
     return best
 
 
-@compiled_plain
+@compiled_part
 def _parted(
     ring: FloatArray, point: IntArray, spare: IntArray, a: int, c: int, b: int, begin: int, end: int
 ) -> tuple[int, int]:
@@ -90,6 +90,6 @@ def _parted(
     return first, first + second
 
 
-@compiled_plain
+@compiled_part
 def _before(ring: FloatArray, a: int, b: int) -> bool:
     return ring[a, 0] < ring[b, 0] or (ring[a, 0] == ring[b, 0] and ring[a, 1] < ring[b, 1])

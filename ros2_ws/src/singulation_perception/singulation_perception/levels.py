@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part, compiled_part_maker
 from singulation_perception.object_points import FIRST, START, STOP, IntArray
 
 Points = NDArray[np.float32]
@@ -18,7 +18,7 @@ _PROMINENCE = 2.5  # a wall is as dense on both sides of a window as in it
 _TAIL, _TAIL_REACH = 0.04, 32  # share of a peak that its own tails can hold, and bins up to which they count
 
 
-@compiled
+@compiled_maker
 def levels_of(
     xyz: Points,
     runs: IntArray,
@@ -79,7 +79,7 @@ def levels_of(
     return first, levels[:count]
 
 
-@compiled_part
+@compiled_part_maker
 def _runs_by_surface(surface: IntArray, count: int) -> tuple[IntArray, IntArray]:
     begin = np.zeros(count + 1, dtype=np.int32)
     for one in surface:
@@ -94,7 +94,7 @@ def _runs_by_surface(surface: IntArray, count: int) -> tuple[IntArray, IntArray]
     return order, begin
 
 
-@compiled_part
+@compiled_part_maker
 def _peaks(histogram: IntArray, width: float, min_size: float, levels: NDArray[np.float64]) -> int:
     """Writes the heights of the levels of a histogram and says how many there are."""
     free = np.empty(len(histogram), dtype=np.int32)  # 0 near a peak that was looked at
@@ -121,7 +121,7 @@ def _peaks(histogram: IntArray, width: float, min_size: float, levels: NDArray[n
     return count
 
 
-@compiled_plain
+@compiled_part
 def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) -> int:
     """Turns heights into limits: sorted, near ones joined, half way between others that would overlap."""
     if count == 0:
@@ -149,7 +149,7 @@ def _limits(levels: NDArray[np.float64], count: int, band: float, apart: float) 
     return kept
 
 
-@compiled_plain
+@compiled_part
 def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
     """Most points in a window, those near earlier peaks left out, and the first bin of that window."""
     best, low, window = 0, 0, 0
@@ -163,7 +163,7 @@ def _fullest(histogram: IntArray, free: IntArray) -> tuple[int, int]:
     return best, low
 
 
-@compiled_plain
+@compiled_part
 def _sum(histogram: IntArray, low: int, high: int) -> int:
     total = 0
     for i in range(max(0, low), min(len(histogram), high)):
@@ -171,7 +171,7 @@ def _sum(histogram: IntArray, low: int, high: int) -> int:
     return total
 
 
-@compiled_plain
+@compiled_part
 def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float) -> float:
     total, weighted = 0, 0.0
     for i in range(max(0, low), min(len(histogram), high)):
@@ -180,7 +180,7 @@ def _mean(histogram: IntArray, free: IntArray, low: int, high: int, width: float
     return weighted * width / total
 
 
-@compiled_plain
+@compiled_part
 def level_at(levels: NDArray[np.float64], begin: int, end: int, height: float) -> int:
     """The level that a height belongs to, -1 if there is none."""
     for level in range(begin, end):

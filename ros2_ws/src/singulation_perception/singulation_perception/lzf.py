@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core import InvalidInputError
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 
 _CORRUPT = -1
 
@@ -23,7 +23,7 @@ def decompress_lzf(packed: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
     return unpacked
 
 
-@compiled
+@compiled_maker
 def _unpack(source: NDArray[np.uint8], target: NDArray[np.uint8]) -> int:
     """Number of bytes written, or ``_CORRUPT`` if a run leads outside either buffer.
 

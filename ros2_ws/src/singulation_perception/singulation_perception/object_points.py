@@ -9,7 +9,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.byte_scan import end_of, repeated
 from singulation_perception.cloud_sample import Workspace
 from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, X, Y, coordinates, marked_blocks
-from singulation_perception.jit import compiled_part_sums, compiled_plain, compiled_sums
+from singulation_perception.jit import compiled_part, compiled_part_sums, compiled_sums
 from singulation_perception.prefetch import LINE, prefetch
 from singulation_perception.raster import Raster
 
@@ -129,7 +129,7 @@ def _collect(
     return count, run, outside
 
 
-@compiled_plain
+@compiled_part
 def _marked(marks: Marks, begin: int, right: int) -> tuple[int, int]:
     """The next columns to look at from ``begin`` on, as far as they hang together; none: ``right`` twice."""
     while begin < right and marks[begin // BLOCK] == 0:
@@ -211,7 +211,7 @@ def _take(
     return count + np.int64(end - first)
 
 
-@compiled_plain
+@compiled_part
 def widen(spans: FloatArray, run: int, height: float) -> None:
     """Takes one more point into the span of a run."""
     spans[run, LOW], spans[run, HIGH] = min(spans[run, LOW], height), max(spans[run, HIGH], height)

@@ -9,7 +9,7 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.confidence import supported_share
 from singulation_perception.edge_fit import corners_of, edges_of, refitted
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale, concave_area
 from singulation_perception.shapes import Shape, shape_of
@@ -74,7 +74,7 @@ def _begins(parts: Sequence[FloatArray | IntArray]) -> IntArray:
     return begin
 
 
-@compiled
+@compiled_maker
 def _outlines(
     points: FloatArray, begin: IntArray, hulls: IntArray, hull_begin: IntArray, measures: FloatArray
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -109,7 +109,7 @@ def _outlines(
     return corners[:count], first, supported, concave, box, shapes
 
 
-@compiled_part
+@compiled_part_maker
 def _fitted(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) -> FloatArray:
     """Refits edges, drops corners finer than the tolerance, and grows the result; the hull as it is if nothing fits."""
     corners = _taken(ring, hull)
@@ -132,7 +132,7 @@ def _fitted(ring: FloatArray, hull: IntArray, tolerance: float, scale: Scale) ->
     return grown
 
 
-@compiled_part
+@compiled_part_maker
 def _without_spurs(ring: FloatArray, outline: FloatArray, reach: float) -> FloatArray:
     """The points of a ring that lie at most ``reach`` outside its outline.
 
@@ -150,7 +150,7 @@ def _without_spurs(ring: FloatArray, outline: FloatArray, reach: float) -> Float
     return inner[:count]
 
 
-@compiled_part
+@compiled_part_maker
 def _taken(points: FloatArray, numbers: IntArray) -> FloatArray:
     taken = np.empty((len(numbers), 2))
     for k in range(len(numbers)):
@@ -158,7 +158,7 @@ def _taken(points: FloatArray, numbers: IntArray) -> FloatArray:
     return taken
 
 
-@compiled_plain
+@compiled_part
 def _same(one: FloatArray, two: FloatArray) -> bool:
     if len(one) != len(two):
         return False
@@ -168,7 +168,7 @@ def _same(one: FloatArray, two: FloatArray) -> bool:
     return True
 
 
-@compiled_plain
+@compiled_part
 def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
     """Whether every edge runs along its line in the right sense, so that the corners form a convex polygon."""
     for i in range(len(corners)):
@@ -179,7 +179,7 @@ def _in_order(corners: FloatArray, lines: FloatArray) -> bool:
     return True
 
 
-@compiled_part
+@compiled_part_maker
 def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
     """Drops edges that only cut a corner off by less than the tolerance, the finest first."""
     count = len(lines)
@@ -198,7 +198,7 @@ def _without_details(lines: FloatArray, tolerance: float) -> FloatArray:
     return lines[:count]
 
 
-@compiled_plain
+@compiled_part
 def _cut_off(lines: FloatArray, count: int, k: int) -> float:
     """How far outside line k of ``count`` its neighbours would meet without it; infinite if they would not."""
     i, j = k - 1 if k > 0 else count - 1, k + 1 if k + 1 < count else 0

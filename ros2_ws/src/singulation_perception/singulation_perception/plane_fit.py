@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_plain, compiled_sums
+from singulation_perception.jit import compiled_part, compiled_sums
 
 _SCORED = 1_000  # points that score a hypothesis
 _LEAST_CROSS = 1e-12  # [m^2] product of two vectors that span a plane
@@ -129,7 +129,7 @@ def _fitted(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatA
     return fitted, moments, int(count)
 
 
-@compiled_plain
+@compiled_part
 def _turn_to_least(moments: FloatArray, plane: FloatArray) -> None:
     """Turns the normal of a plane into the direction in which the moments are least, on the same side.
 

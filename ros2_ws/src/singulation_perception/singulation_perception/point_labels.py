@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from singulation_core.polygon import FloatArray, inward_half_planes
 from singulation_perception.block_search import Blocks
 from singulation_perception.found_block import deepest
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.object_points import FIRST, ROW, START, STOP, IntArray, ObjectPoints
 
 
@@ -29,7 +29,7 @@ def labels_in_image(shape: tuple[int, ...], seen: ObjectPoints, blocks: Blocks) 
     return labels
 
 
-@compiled
+@compiled_maker
 def _paint(
     labels: IntArray,
     xyz: NDArray[np.float32],

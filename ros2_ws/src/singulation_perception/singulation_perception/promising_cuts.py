@@ -5,7 +5,7 @@ import numpy as np
 from singulation_core.polygon import FloatArray
 from singulation_perception.cutting import both_pieces, estimated, left_concave
 from singulation_perception.face_image import FaceImage
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.rings import Scale
 from singulation_perception.seam_lines import seam_line
 from singulation_perception.seams import candidates, edges_between, one_seam
@@ -17,7 +17,7 @@ _TOLD = 0.5  # strength of a trace from which on it tells where a cut ends
 _SEEN = 0.8  # share of a cut's cost that a trace beyond doubt saves
 
 
-@compiled
+@compiled_maker
 def promising_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: float, most: int) -> FloatArray:
     """The cheapest cuts of a ring.
 
@@ -75,7 +75,7 @@ def promising_cuts(ring: FloatArray, scale: Scale, image: FaceImage, noise: floa
     return cuts[:count]
 
 
-@compiled_plain
+@compiled_part
 def _same_seam(cuts: FloatArray, count: int, ring: FloatArray, i: int, j: int, pitch: float) -> int:
     """Which of the first ``count`` cuts runs along the seam from point i to point j; -1 if none does."""
     for k in range(count):

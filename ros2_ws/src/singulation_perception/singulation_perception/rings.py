@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 
 
@@ -32,7 +32,7 @@ class Scale(NamedTuple):
 _RANK = 4  # points that must lie that deep: less is a hole at the rim
 
 
-@compiled_plain
+@compiled_part
 def ring_area(ring: FloatArray) -> float:
     """Signed area [m^2], positive when counter-clockwise."""
     total = 0.0
@@ -43,7 +43,7 @@ def ring_area(ring: FloatArray) -> float:
     return 0.5 * total
 
 
-@compiled_part
+@compiled_part_maker
 def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     """Area between a ring and its hull, of the pockets deeper than the roughness of the rim [m^2]."""
     found = pockets(ring, hull, roughness)
@@ -53,7 +53,7 @@ def concave_area(ring: FloatArray, hull: IntArray, roughness: float) -> float:
     return total
 
 
-@compiled_part
+@compiled_part_maker
 def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
     """(p, 4) of the pockets between ring and hull that are deeper than ``roughness`` [m]: first and last point, area
     [m^2] and depth [m].
@@ -74,7 +74,7 @@ def pockets(ring: FloatArray, hull: IntArray, roughness: float) -> FloatArray:
     return found[:count]
 
 
-@compiled_part
+@compiled_part_maker
 def _in_order(hull: IntArray) -> IntArray:
     """Numbers of the corners sorted: noise along the line of sight can make a ring, and with it its hull, skip back."""
     corners = hull.copy()
@@ -87,7 +87,7 @@ def _in_order(hull: IntArray) -> IntArray:
     return corners
 
 
-@compiled_plain
+@compiled_part
 def _stands_back(ring: FloatArray, first: int, last: int, roughness: float) -> bool:
     """Whether any point behind one edge of the hull is deeper than ``roughness`` [m]; behind most edges none is."""
     size = len(ring)
@@ -101,7 +101,7 @@ def _stands_back(ring: FloatArray, first: int, last: int, roughness: float) -> b
     return deepest > roughness * math.sqrt(ex * ex + ey * ey)
 
 
-@compiled_plain
+@compiled_part
 def _pocket(ring: FloatArray, first: int, last: int, deepest: FloatArray) -> tuple[float, float]:
     """Area behind one edge of the hull and how deep its fourth deepest point lies; ``deepest`` is worked in."""
     size = len(ring)
@@ -129,7 +129,7 @@ def _pocket(ring: FloatArray, first: int, last: int, deepest: FloatArray) -> tup
     return 0.5 * abs(area), deepest[_RANK - 1]
 
 
-@compiled_plain
+@compiled_part
 def least_width(ring: FloatArray, hull: IntArray) -> float:
     """Distance of the closest pair of parallel lines that hold the ring [m]."""
     least, count, opposite = np.inf, len(hull), -1
@@ -151,7 +151,7 @@ def least_width(ring: FloatArray, hull: IntArray) -> float:
     return least if least < np.inf else 0.0
 
 
-@compiled_plain
+@compiled_part
 def _opposite(ring: FloatArray, hull: IntArray, start: int, x: float, y: float) -> int:
     """Which corner of a hull lies farthest to the left of a line from one of its points."""
     best, most = 0, -np.inf

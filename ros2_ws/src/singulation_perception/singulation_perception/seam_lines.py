@@ -5,14 +5,14 @@ import math
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import Scale
 
 _SHARP, _MOVED = 0.3, 4.0  # sine between two edges that fix their corner; pitches that it may lie beside the ring
 
 
-@compiled_part
+@compiled_part_maker
 def seam_line(
     ring: FloatArray,
     cut: FloatArray,
@@ -57,7 +57,7 @@ def seam_line(
     return cx, cy, ux, uy
 
 
-@compiled_plain
+@compiled_part
 def _sharp_corner(
     ring: FloatArray, point: int, index: IntArray, lines: FloatArray, fitted: IntArray, scale: Scale
 ) -> tuple[float, float]:

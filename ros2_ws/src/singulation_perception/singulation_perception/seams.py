@@ -11,7 +11,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import fitted_line
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 
 _REFLEX = -0.1  # sine of the turn
@@ -31,7 +31,7 @@ _NECK_CUT = 0.002  # joining two near reflex corners across
 _PAIR_CUT = 0.004  # joining two others, whatever their edges say
 
 
-@compiled_part
+@compiled_part_maker
 def edges_between(ring: FloatArray, index: IntArray) -> tuple[FloatArray, FloatArray, IntArray]:
     """Edges between the corners of a ring.
 
@@ -64,7 +64,7 @@ def edges_between(ring: FloatArray, index: IntArray) -> tuple[FloatArray, FloatA
     return lines, length, fitted
 
 
-@compiled_part
+@compiled_part_maker
 def candidates(ring: FloatArray, index: IntArray, lines: FloatArray, length: FloatArray, pitch: float) -> FloatArray:
     """Possible cuts, (c, 7): first and last point, length [m], penalty [m], the edges it continues, -1 for none, and
     whether it ends in the middle of an edge.
@@ -107,7 +107,7 @@ def candidates(ring: FloatArray, index: IntArray, lines: FloatArray, length: Flo
     return found[:size]
 
 
-@compiled_plain
+@compiled_part
 def _write(
     cuts: FloatArray, k: int, first: int, last: int, length: float, penalty: float, edge: int, other: int
 ) -> None:
@@ -115,7 +115,7 @@ def _write(
     cuts[k, 3], cuts[k, 4], cuts[k, 5] = penalty, edge, other
 
 
-@compiled_plain
+@compiled_part
 def _faces_inwards(ring: FloatArray, index: IntArray, lines: FloatArray, one: int, two: int) -> bool:
     """Whether the way between two reflex corners begins inside the ring at either end."""
     x, y = ring[index[two], 0] - ring[index[one], 0], ring[index[two], 1] - ring[index[one], 1]
@@ -126,7 +126,7 @@ def _faces_inwards(ring: FloatArray, index: IntArray, lines: FloatArray, one: in
     return True
 
 
-@compiled_plain
+@compiled_part
 def _along_edge(ring: FloatArray, index: IntArray, lines: FloatArray, corner: int, point: int) -> int:
     """The edge at a corner that the way to a point of the ring continues; -1 if neither does."""
     x, y = ring[point, 0] - ring[index[corner], 0], ring[point, 1] - ring[index[corner], 1]
@@ -137,18 +137,18 @@ def _along_edge(ring: FloatArray, index: IntArray, lines: FloatArray, corner: in
     return before if one < two else after
 
 
-@compiled_plain
+@compiled_part
 def _distance(ring: FloatArray, a: int, b: int) -> float:
     x, y = ring[a, 0] - ring[b, 0], ring[a, 1] - ring[b, 1]
     return math.sqrt(x * x + y * y)
 
 
-@compiled_plain
+@compiled_part
 def _apart(a: int, b: int, size: int) -> int:
     return min((a - b) % size, (b - a) % size)
 
 
-@compiled_plain
+@compiled_part
 def _cast(ring: FloatArray, start: int, lines: FloatArray, edge: int, sense: float, least: float) -> tuple[float, int]:
     """How far the line runs from a point of the ring until it meets the ring again, and the point it meets."""
     nx, ny, offset = lines[edge, 0], lines[edge, 1], lines[edge, 2]
@@ -169,7 +169,7 @@ def _cast(ring: FloatArray, start: int, lines: FloatArray, edge: int, sense: flo
     return best, hit
 
 
-@compiled_plain
+@compiled_part
 def _end(
     ring: FloatArray,
     index: IntArray,
@@ -202,7 +202,7 @@ def _end(
     return best, best_edge, best_sine
 
 
-@compiled
+@compiled_maker
 def one_seam(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float, pitch: float
 ) -> bool:
@@ -212,7 +212,7 @@ def one_seam(
     return within or max(_to_segment(cx, cy, ax, ay, bx, by), _to_segment(dx, dy, ax, ay, bx, by)) < reach
 
 
-@compiled_plain
+@compiled_part
 def _to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
     """Distance of a place to the segment a-b [m]."""
     ex, ey = bx - ax, by - ay

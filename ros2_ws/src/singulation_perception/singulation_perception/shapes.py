@@ -7,7 +7,7 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import edges_of
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import ring_area
 
@@ -28,7 +28,7 @@ class Shape(NamedTuple):
     length: float
 
 
-@compiled
+@compiled_maker
 def shape_of(outline: FloatArray) -> Shape:
     """Of a convex outline (k, 2), counter-clockwise [m]."""
     total, x, y = 0.0, 0.0, 0.0
@@ -54,7 +54,7 @@ def shape_of(outline: FloatArray) -> Shape:
     return Shape(x, y, radius, least)
 
 
-@compiled
+@compiled_maker
 def shared_area(one: FloatArray, two: FloatArray) -> tuple[float, float, float]:
     """Area of the intersection of two convex counter-clockwise outlines (Sutherland and Hodgman 1974), and the area of
     each of them [m^2].
@@ -84,7 +84,7 @@ def shared_area(one: FloatArray, two: FloatArray) -> tuple[float, float, float]:
     return shared, ring_area(one), ring_area(two)
 
 
-@compiled
+@compiled_maker
 def meeting_pairs(shapes: FloatArray, heights: FloatArray, step: float) -> IntArray:
     """(m, 2) lower and higher of all pairs of different height whose bounding circles meet.
 

@@ -3,13 +3,13 @@
 import numpy as np
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled_part, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_part_maker
 from singulation_perception.object_points import IntArray
 
 _NEARLY = 0.5  # square of the share of the tolerance by which a corner must stand out in the end
 
 
-@compiled_part
+@compiled_part_maker
 def simplified(ring: FloatArray, tolerance: float) -> IntArray:
     """Which points of a ring are left as corners, in its order, none farther than ``tolerance`` from what is left."""
     size = len(ring)
@@ -33,7 +33,7 @@ def simplified(ring: FloatArray, tolerance: float) -> IntArray:
     return _standing_out(ring, kept, tolerance)
 
 
-@compiled_plain
+@compiled_part
 def _farthest_from(ring: FloatArray, start: int) -> int:
     best, most = start, 0.0
     for i in range(len(ring)):
@@ -43,7 +43,7 @@ def _farthest_from(ring: FloatArray, start: int) -> int:
     return best
 
 
-@compiled_plain
+@compiled_part
 def _farthest_between(ring: FloatArray, begin: int, end: int, tolerance: float) -> int:
     """Point between two others, counted on beyond the end of the ring, farthest from the line through them; -1 if
     none is out of tolerance.
@@ -62,7 +62,7 @@ def _farthest_between(ring: FloatArray, begin: int, end: int, tolerance: float) 
     return best
 
 
-@compiled_part
+@compiled_part_maker
 def _standing_out(ring: FloatArray, kept: IntArray, tolerance: float) -> IntArray:
     """Numbers of the points kept, without those that hardly stand out between their neighbours."""
     corners = np.empty(len(ring), dtype=np.int32)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
-from singulation_perception.jit import compiled, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.levels import level_at, levels_of
 from singulation_perception.object_points import (
     FIRST,
@@ -106,7 +106,7 @@ def faces_of(seen: ObjectPoints, surfaces: Surfaces, band: float, apart: float, 
     return Faces(runs, face, surface, np.isfinite(levels[level_of_face, 0]), counts, heights, scatter, holes, boxes)
 
 
-@compiled
+@compiled_maker
 def connected_runs(xyz: Points, runs: IntArray, spans: FloatArray, kind: IntArray, step: float) -> tuple[IntArray, int]:
     """Number of the connected set of each run: runs of one kind, above one another, at most ``step`` apart.
 
@@ -128,7 +128,7 @@ def connected_runs(xyz: Points, runs: IntArray, spans: FloatArray, kind: IntArra
     return numbered_roots(parent)
 
 
-@compiled_plain
+@compiled_part
 def _meet(xyz: Points, runs: IntArray, spans: FloatArray, one: int, two: int, step: float) -> bool:
     """Whether two runs in neighbouring rows have neighbours that differ by at most ``step``."""
     if step == np.inf or max(spans[one, HIGH], spans[two, HIGH]) - min(spans[one, LOW], spans[two, LOW]) <= step:
@@ -142,7 +142,7 @@ def _meet(xyz: Points, runs: IntArray, spans: FloatArray, one: int, two: int, st
     return False
 
 
-@compiled
+@compiled_maker
 def _sizes(runs: IntArray, spans: FloatArray, surface: IntArray, count: int) -> tuple[IntArray, NDArray[np.float32]]:
     sizes = np.zeros(count, dtype=np.int32)
     tops = np.zeros(count, dtype=np.float32)
@@ -152,7 +152,7 @@ def _sizes(runs: IntArray, spans: FloatArray, surface: IntArray, count: int) -> 
     return sizes, tops
 
 
-@compiled
+@compiled_maker
 def _runs_on_levels(
     xyz: Points,
     runs: IntArray,
@@ -195,7 +195,7 @@ def _runs_on_levels(
     return cut[:count], cut_spans[:count], kind[:count]
 
 
-@compiled
+@compiled_maker
 def _face_table(
     runs: IntArray, spans: FloatArray, face: IntArray, level: IntArray, count: int
 ) -> tuple[IntArray, FloatArray, FloatArray, IntArray, IntArray, IntArray]:

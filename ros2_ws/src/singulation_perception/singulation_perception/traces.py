@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from singulation_perception.face_image import FaceImage
-from singulation_perception.jit import compiled, compiled_part, compiled_plain
+from singulation_perception.jit import compiled_maker, compiled_part, compiled_part_maker
 
 _ENDS = 4.0  # pitches at either end of the seam, where its corners disturb
 _NEAR, _FAR = 3.5, 7.5  # pitches from the seam at which heights are compared
@@ -15,7 +15,7 @@ _STEP, _STEP_IN_NOISE = 0.00015, 2.5  # [m] step that is proof; warp and print g
 _SURE = 4.0  # standard errors
 
 
-@compiled
+@compiled_maker
 def trace_strength(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float, noise: float) -> float:
     """0 if nothing of a seam is seen between two points of a face, up to 1 if a groove or step is beyond doubt.
 
@@ -33,7 +33,7 @@ def trace_strength(image: FaceImage, ax: float, ay: float, bx: float, by: float,
     return min(1.0, max(0.0, groove, edge))
 
 
-@compiled_part
+@compiled_part_maker
 def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: float) -> tuple[float, float, float]:
     """Share of places on the line without points, beyond what is missing beside it; step [m] and its standard error.
 
@@ -80,7 +80,7 @@ def _along(image: FaceImage, ax: float, ay: float, bx: float, by: float, pitch: 
     return missing, level[0] - level[1], math.sqrt(error)
 
 
-@compiled_plain
+@compiled_part
 def _height(image: FaceImage, x: float, y: float) -> float:
     """Height at a place of the table, relative to a point of the face [m]; NaN without a point."""
     map_ = image.to_pixel

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_perception.jit import compiled_part, compiled_plain
+from singulation_perception.jit import compiled_part, compiled_part_maker
 
 IntArray = NDArray[np.int32]
 
 
-@compiled_part
+@compiled_part_maker
 def single_sets(count: int) -> IntArray:
     """Parents of items none of which are joined."""
     parent = np.empty(count, dtype=np.int32)
@@ -17,7 +17,7 @@ def single_sets(count: int) -> IntArray:
     return parent
 
 
-@compiled_plain
+@compiled_part
 def find_root(parent: IntArray, item: int) -> int:
     """Root of ``item``; halves the path on the way."""
     while parent[item] != item:
@@ -26,7 +26,7 @@ def find_root(parent: IntArray, item: int) -> int:
     return item
 
 
-@compiled_plain
+@compiled_part
 def unite(parent: IntArray, first: int, second: int) -> None:
     """Joins two sets; the smaller root stays, so that numbers follow the order of the items."""
     a, b = find_root(parent, np.int64(first)), find_root(parent, np.int64(second))
@@ -36,7 +36,7 @@ def unite(parent: IntArray, first: int, second: int) -> None:
         parent[a] = b
 
 
-@compiled_part
+@compiled_part_maker
 def numbered_roots(parent: IntArray) -> tuple[IntArray, int]:
     """Set number 0, 1, ... of every item, in the order of the first item, and how many sets there are."""
     numbers = np.empty(len(parent), dtype=np.int32)

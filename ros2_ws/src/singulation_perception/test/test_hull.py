@@ -5,16 +5,16 @@ from hypothesis import strategies as st
 
 from singulation_core.polygon import convex_hull, signed_area
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.rings import least_width
 
 
-@compiled
+@compiled_maker
 def hull_of(ring):
     return hull_indices(ring)
 
 
-@compiled
+@compiled_maker
 def width_of(ring):
     return least_width(ring, hull_indices(ring))
 

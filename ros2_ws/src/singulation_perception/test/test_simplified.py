@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 
 from singulation_core.polygon import convex_hull
-from singulation_perception.jit import compiled
+from singulation_perception.jit import compiled_maker
 from singulation_perception.simplified import simplified
 
 TOLERANCE = 0.0012  # m
 
 
-@compiled
+@compiled_maker
 def corners_of(ring, tolerance):
     return simplified(ring, tolerance)
 

@@ -10,6 +10,7 @@ PROGRAM = """
 import sys
 import singulation_perception
 from numba.core.dispatcher import Dispatcher
+from singulation_core.claimed_cache import ClaimedCache
 from singulation_perception.warming import STEPS
 
 singulation_perception.warm_up()
@@ -19,7 +20,7 @@ for name, module in list(sys.modules.items()):
     if name.startswith("singulation_perception."):
         for function in vars(module).values():
             if isinstance(function, Dispatcher) and function.py_func.__module__ == name:
-                if not function.targetoptions.get("no_cpython_wrapper") and len(function.signatures) != 1:
+                if isinstance(function._cache, ClaimedCache) and len(function.signatures) != 1:
                     print(name, function.py_func.__name__, len(function.signatures))
 """
 
