@@ -5,10 +5,14 @@ from pathlib import PurePosixPath
 from typing import Any
 
 import pytest
+from hypothesis import settings
 from xdist.scheduler import LoadFileScheduling
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in background commands of a shell
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+settings.register_profile("any speed", deadline=None)  # no test is about time: the machine may be busy
+settings.load_profile("any speed")
 
 
 class OneDemoAtATime(LoadFileScheduling):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from singulation_core.errors import InvalidInputError
-from singulation_core.polygon import FloatArray, measured_outline
+from singulation_core.polygon import FloatArray, MeasuredOutline, measured_outline
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,16 +34,29 @@ class PlanarObject:
     area: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        name = f"object {self.id}"
-        if not (0 <= self.id < 2**32):
-            raise InvalidInputError(f"{name}: id out of range, need 0 <= id < 2**32")
-        if not (0.0 <= self.height < float("inf")):
-            raise InvalidInputError(f"{name}: height {self.height} m, need a finite one >= 0")
-        if not (0.0 <= self.confidence <= 1.0):
-            raise InvalidInputError(f"{name}: confidence {self.confidence}, need 0..1")
-        measured = measured_outline(self.outline, name)
+        _require(self.id, self.height, self.confidence)
+        measured = measured_outline(self.outline, f"object {self.id}")
         for attribute, value in zip(measured._fields, measured, strict=True):
             object.__setattr__(self, attribute, value)
+
+    @classmethod
+    def measured(
+        cls, id: int, outline: MeasuredOutline, height: float = 0.0, point_count: int = 0, confidence: float = 1.0
+    ) -> "PlanarObject":
+        """An object with an outline that was checked and measured already, which takes most of the time of making one.
+
+        Args:
+            id: as for the class, and so are ``height``, ``point_count`` and ``confidence``.
+            outline: as ``measured_outline`` gives it.
+
+        Raises:
+            InvalidInputError: naming the object and what is wrong with it.
+        """
+        _require(id, height, confidence)
+        made = cls.__new__(cls)
+        values = outline._asdict() | {"id": id, "height": height, "point_count": point_count, "confidence": confidence}
+        made.__dict__.update(values)  # a frozen object is filled once
+        return made
 
     def moved(self, translation: ArrayLike, rotation: float = 0.0) -> "PlanarObject":
         """The same block turned by ``rotation`` [rad] about its centroid, then shifted by (2,) [m]."""
@@ -57,3 +70,12 @@ class PlanarObject:
             self.point_count,
             self.confidence,
         )
+
+
+def _require(id: int, height: float, confidence: float) -> None:
+    if not (0 <= id < 2**32):
+        raise InvalidInputError(f"object {id}: id out of range, need 0 <= id < 2**32")
+    if not (0.0 <= height < float("inf")):
+        raise InvalidInputError(f"object {id}: height {height} m, need a finite one >= 0")
+    if not (0.0 <= confidence <= 1.0):
+        raise InvalidInputError(f"object {id}: confidence {confidence}, need 0..1")

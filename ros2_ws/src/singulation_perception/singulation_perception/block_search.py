@@ -69,7 +69,7 @@ def blocks_of(
     found = every.found(_suspects(faces, chosen, noise), dropped)
     found = with_hidden_corners(found, every, band)
     found, dropped["stacked"] = settled(_with_size_doubts(found, parameters.max_extent), band)
-    objects = [PlanarObject(i, one.outline, one.height, one.count, one.confidence) for i, one in enumerate(found)]
+    objects = [one.planar_object(i) for i, one in enumerate(found)]
     return Blocks(objects, [one.surface for one in found], surfaces, dropped)
 
 

@@ -38,20 +38,23 @@ class FaceMaps:
 
 def face_maps(faces: Faces, chosen: IntArray) -> FaceMaps:
     """Paints the chosen faces."""
-    box = faces.box[chosen]
-    sizes = np.column_stack((box[:, 0] - 1, box[:, 2] - 1, box[:, 1] - box[:, 0] + 2, box[:, 3] - box[:, 2] + 2))
-    first = np.concatenate(([0], np.cumsum(sizes[:, 2].astype(np.int64) * sizes[:, 3])))
-    image_of_face = np.full(len(faces.count), -1, dtype=np.int32)
-    image_of_face[chosen] = np.arange(len(chosen), dtype=np.int32)
-    sizes = np.ascontiguousarray(sizes, dtype=np.int32)
-    point = _painted(faces.runs, faces.of_run, image_of_face, first, sizes)
-    return FaceMaps(chosen, point, first, sizes)
+    return FaceMaps(chosen, *_painted(faces.runs, faces.of_run, faces.box, chosen))
 
 
 @compiled_maker
 def _painted(
-    runs: IntArray, face: IntArray, image_of_face: IntArray, first: NDArray[np.int64], box: IntArray
-) -> IntArray:
+    runs: IntArray, face: IntArray, face_box: IntArray, chosen: IntArray
+) -> tuple[IntArray, NDArray[np.int64], IntArray]:
+    first, box = np.zeros(len(chosen) + 1, dtype=np.int64), np.empty((len(chosen), 4), dtype=np.int32)
+    image_of_face = np.empty(len(face_box), dtype=np.int32)
+    for one in range(len(face_box)):
+        image_of_face[one] = -1
+    for k in range(len(chosen)):
+        one = chosen[k]
+        image_of_face[one] = k
+        box[k, 0], box[k, 1] = face_box[one, 0] - 1, face_box[one, 2] - 1
+        box[k, 2], box[k, 3] = face_box[one, 1] - box[k, 0] + 1, face_box[one, 3] - box[k, 1] + 1
+        first[k + 1] = first[k] + np.int64(box[k, 2]) * box[k, 3]
     point = np.empty(first[-1], dtype=np.int32)
     for i in range(len(point)):
         point[np.uintp(i)] = -1
@@ -62,7 +65,7 @@ def _painted(
             number = np.int32(runs[run, FIRST])
             for i in range(runs[run, STOP] - runs[run, START]):
                 point[at + np.uintp(i)] = number + np.int32(i)
-    return point
+    return point, first, box
 
 
 def rims(maps: FaceMaps) -> tuple[IntArray, IntArray]:

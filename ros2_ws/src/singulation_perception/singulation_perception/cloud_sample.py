@@ -26,7 +26,7 @@ class CloudSample:
     """Valid points of every ``step``-th row and column that lie inside the workspace.
 
     Args:
-        located: (m, 3) in the given frame [m].
+        located: (3, m) in the given frame [m].
         columns: (H, 2) first column and column after the last that may hold the workspace, in each row of the cloud.
         distance: mean distance of the points to the camera [m].
         pitch: distance of neighbouring points of the cloud on the table, rather too large than too small [m].
@@ -62,13 +62,14 @@ def sample(cloud: Raster, frame: FloatArray, workspace: Workspace | None) -> Clo
             f"{valid} of {looked_at} sampled points are valid (finite and not 0 0 0); is the camera covered?",
         )
     # In millimetres, everything lies far outside the workspace.
-    distance = inside / len(located) if len(located) >= _FEWEST else everywhere / max(valid, 1)
+    count = located.shape[1]
+    distance = inside / count if count >= _FEWEST else everywhere / max(valid, 1)
     if not (distance < _METRES_LIMIT):
         raise SingulationError(
             ResultCode.NOT_METRES,
             f"mean distance {distance:.0f}: the cloud looks like millimetres; clouds are in metres, divide by 1000",
         )
-    return CloudSample(located, columns, distance, _pitch(box, len(located) * row_step * column_step))
+    return CloudSample(located, columns, distance, _pitch(box, count * row_step * column_step))
 
 
 def _pitch(box: FloatArray, points: int) -> float:
@@ -99,7 +100,7 @@ def _pick(
     greatest x and y; how many points are valid anywhere; the sums of the distances of both to the camera.
     """
     numbers = cloud.numbers
-    located = np.empty(((cloud.height // row_step + 1) * (cloud.width // column_step + 1), 3))
+    located = np.empty((3, (cloud.height // row_step + 1) * (cloud.width // column_step + 1)))
     spans = np.empty((-(-cloud.height // row_step), 2), dtype=np.int32)
     count, valid, inside, everywhere = 0, 0, 0.0, 0.0
     x_min, x_max, y_min, y_max = np.inf, -np.inf, np.inf, -np.inf
@@ -119,11 +120,18 @@ def _pick(
             x = a * frame[0, 0] + b * frame[0, 1] + c * frame[0, 2] + frame[0, 3]
             y = a * frame[1, 0] + b * frame[1, 1] + c * frame[1, 2] + frame[1, 3]
             if limits[0] <= x <= limits[1] and limits[2] <= y <= limits[3]:
-                located[count, 0], located[count, 1] = x, y
-                located[count, 2] = a * frame[2, 0] + b * frame[2, 1] + c * frame[2, 2] + frame[2, 3]
+                located[0, count], located[1, count] = x, y
+                located[2, count] = a * frame[2, 0] + b * frame[2, 1] + c * frame[2, 2] + frame[2, 3]
                 x_min, x_max, y_min, y_max = min(x_min, x), max(x_max, x), min(y_min, y), max(y_max, y)
                 count += 1
                 inside += distance
                 left, right = min(left, column), column + 1
         spans[row // row_step, 0], spans[row // row_step, 1] = left, right
-    return located[:count], spans, np.array((x_min, x_max, y_min, y_max)), valid, inside, everywhere
+    return (
+        np.ascontiguousarray(located[:, :count]),
+        spans,
+        np.array((x_min, x_max, y_min, y_max)),
+        valid,
+        inside,
+        everywhere,
+    )

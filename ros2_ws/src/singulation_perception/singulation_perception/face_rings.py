@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.hull import hull_indices
-from singulation_perception.jit import compiled_maker
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import concave_area, least_width
 
 _SMALLEST_AREA = 1e-9  # [m^2] what has less is a line
 _ROUGH_PITCHES, _ROUGH_NOISE = 2.5, 8.0
+_LEAST_PITCH, _MOST_PITCH = 0.8, 1.25  # times the usual one
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,21 +70,8 @@ def face_rings(
         camera: (3,) its place in ``table`` [m].
     """
     points, pixels, area = _oriented(xyz, rim, begin)
-    # Pick's theorem: the area of a lattice polygon in cells is its points, less half of those on the rim, less one.
-    cells = np.maximum(count - 0.5 * np.diff(begin) - 1.0, 1.0)
-    pitch = np.sqrt(np.maximum(area, _SMALLEST_AREA) / cells)
-    if len(pitch):
-        level = pitch > 0.5 * pitch.max()  # walls have hardly any area from above
-        usual = float(np.sqrt(area[level].sum() / cells[level].sum()))
-        pitch = np.clip(pitch, 0.8 * usual, 1.25 * usual)
-    roughness = np.maximum(_ROUGH_PITCHES * pitch, _ROUGH_NOISE * noise * _obliqueness(xyz, rim, begin, camera))
+    pitch, roughness = _scales(xyz, rim, begin, area, count, noise, camera)
     return FaceRings(points, pixels, begin, pitch, roughness, *_measures(points, begin, area, roughness))
-
-
-def _obliqueness(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray, camera: FloatArray) -> FloatArray:
-    """Tangent of the angle between the vertical and the line of sight to each face."""
-    way = camera - xyz[rim[begin[:-1], 0]]
-    return np.asarray(np.hypot(way[:, 0], way[:, 1]) / np.maximum(np.abs(way[:, 2]), 1e-3))
 
 
 @compiled_maker
@@ -104,6 +92,41 @@ def _oriented(xyz: NDArray[np.float32], rim: IntArray, begin: IntArray) -> tuple
             points[at, 0], points[at, 1] = xyz[rim[i, 0], 0], xyz[rim[i, 0], 1]
             pixels[at, 0], pixels[at, 1] = rim[i, 1], rim[i, 2]
     return points, pixels, area
+
+
+@compiled_maker
+def _scales(
+    xyz: NDArray[np.float32],
+    rim: IntArray,
+    begin: IntArray,
+    area: FloatArray,
+    count: IntArray,
+    noise: float,
+    camera: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Distance of neighbouring points and roughness of the rim of each face."""
+    pitch, roughness = np.empty(len(area)), np.empty(len(area))
+    widest, covered, cells = 0.0, 0.0, 0.0
+    for k in range(len(area)):
+        pitch[k] = math.sqrt(max(area[k], _SMALLEST_AREA) / _cells(count[k], begin[k + 1] - begin[k]))
+        widest = max(widest, pitch[k])
+    for k in range(len(area)):
+        if pitch[k] > 0.5 * widest:  # walls have hardly any area from above
+            covered, cells = covered + area[k], cells + _cells(count[k], begin[k + 1] - begin[k])
+    usual = math.sqrt(covered / cells) if len(area) > 0 else 0.0
+    for k in range(len(area)):
+        pitch[k] = min(max(pitch[k], _LEAST_PITCH * usual), _MOST_PITCH * usual)
+        at = rim[begin[k], 0]
+        x, y, z = camera[0] - xyz[at, 0], camera[1] - xyz[at, 1], camera[2] - xyz[at, 2]
+        oblique = math.sqrt(x * x + y * y) / max(abs(z), 1e-3)  # tangent between the vertical and the line of sight
+        roughness[k] = max(_ROUGH_PITCHES * pitch[k], _ROUGH_NOISE * noise * oblique)
+    return pitch, roughness
+
+
+@compiled_part
+def _cells(count: int, on_rim: int) -> float:
+    """Pick's theorem: the area of a lattice polygon in cells is its points, less half of those on the rim, less one."""
+    return max(count - 0.5 * on_rim - 1.0, 1.0)
 
 
 @compiled_maker

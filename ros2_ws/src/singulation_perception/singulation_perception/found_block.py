@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from singulation_core.polygon import FloatArray, inward_half_planes
+from singulation_core import PlanarObject
+from singulation_core.polygon import FloatArray, MeasuredOutline, inward_half_planes
 from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.shapes import Shape, shape_of
@@ -40,6 +41,16 @@ class FoundBlock:
     def doubted(self, factor: float) -> "FoundBlock":
         """The same block with less confidence."""
         return replace(self, confidence=self.confidence * factor)
+
+    def planar_object(self, number: int) -> PlanarObject:
+        """The block as it is published; its outline is looked at more closely if it is not plainly convex."""
+        shape = self.shape
+        if not (shape.area > 0.0):
+            return PlanarObject(number, self.outline, self.height, self.count, self.confidence)
+        outline, centroid = self.outline.copy(), np.array((shape.x, shape.y))
+        outline.flags.writeable = centroid.flags.writeable = False
+        measured = MeasuredOutline(outline, shape.area, centroid, shape.radius)
+        return PlanarObject.measured(number, measured, self.height, self.count, self.confidence)
 
 
 def shares(point: IntArray, xyz: NDArray[np.float32], outlines: list[FloatArray]) -> tuple[IntArray, FloatArray]:

@@ -30,7 +30,7 @@ class Outlines:
         supported: (n,) share of the length of each outline with points of its ring near it.
         concave: (n,) area between each ring and its hull, roughness and spurs apart [m^2].
         box: (n, 4) least and greatest x, least and greatest y of each outline [m].
-        shapes: (n, 4) of each outline, as in ``Shape``.
+        shapes: (n, 5) of each outline, as in ``Shape``.
     """
 
     corners: FloatArray
@@ -80,7 +80,7 @@ def _outlines(
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray, FloatArray]:
     corners, first = np.empty((len(points), 2)), np.zeros(len(begin), dtype=np.int32)
     supported, concave, box = np.zeros(len(measures)), np.zeros(len(measures)), np.zeros((len(measures), 4))
-    shapes = np.zeros((len(measures), 4))
+    shapes = np.zeros((len(measures), 5))
     count = 0
     for k in range(len(measures)):
         ring = points[begin[k] : begin[k + 1]]
@@ -99,7 +99,8 @@ def _outlines(
                 box[k, 2], box[k, 3] = min(box[k, 2], y), max(box[k, 3], y)
                 count += 1
             shape = shape_of(outline)
-            shapes[k, 0], shapes[k, 1], shapes[k, 2], shapes[k, 3] = shape.x, shape.y, shape.radius, shape.length
+            shapes[k, 0], shapes[k, 1], shapes[k, 2] = shape.x, shape.y, shape.radius
+            shapes[k, 3], shapes[k, 4] = shape.length, shape.area
             concave[k] = 0.0 if convex else concave_area(ring, hull, scale.roughness)
             if concave[k] > 0.0:
                 inner = _without_spurs(ring, outline, scale.pitch)

@@ -44,7 +44,7 @@ def settled(blocks: list[FoundBlock], step: float) -> tuple[list[FoundBlock], in
 
 def near_pairs(blocks: list[FoundBlock], step: float) -> list[tuple[int, int]]:
     """Lower and higher block of all pairs of different height whose bounding circles meet."""
-    shapes = np.array([block.shape for block in blocks]).reshape(-1, 4)
+    shapes = np.array([block.shape for block in blocks]).reshape(-1, 5)
     pairs = meeting_pairs(shapes, np.array([block.height for block in blocks]), step)
     return [(i, j) for i, j in pairs.tolist()]
 

@@ -10,6 +10,7 @@ from singulation_perception.jit import compiled_part, compiled_sums
 _SCORED = 1_000  # points that score a hypothesis
 _LEAST_CROSS = 1e-12  # [m^2] product of two vectors that span a plane
 _HOLDS = 0.5  # share of the points near a plane that no other can have
+_JUDGED = 4_000  # points that tell the scatter
 _ROUNDS = 4
 _TURNS = 3  # of the normal, in each round
 _SETTLED = 0.02  # relative change of the noise that ends the fit
@@ -19,7 +20,7 @@ def best_plane(points: FloatArray, hypotheses: int, reach: float, first: FloatAr
     """The plane through three of the points that has most of them near it.
 
     Args:
-        points: (m, 3) [m].
+        points: (3, m) [m].
         hypotheses: how many to try.
         reach: distance that counts as near [m].
         first: a plane (4,) that is taken at once if more than half of the points lie near it.
@@ -27,7 +28,7 @@ def best_plane(points: FloatArray, hypotheses: int, reach: float, first: FloatAr
     Returns:
         (4,) unit normal and offset, distance = normal . point + offset; None if the points lie on one line.
     """
-    scored = np.ascontiguousarray(points[:: max(1, len(points) // _SCORED)].T)
+    scored = np.ascontiguousarray(points[:, :: max(1, points.shape[1] // _SCORED)])
     if first is not None and np.count_nonzero(np.abs(first[:3] @ scored + first[3]) < reach) > _HOLDS * scored.shape[1]:
         return first
     plane, found = _best(scored, hypotheses, reach)
@@ -71,18 +72,17 @@ def refined_plane(points: FloatArray, plane: FloatArray, reach: float) -> tuple[
     """Least squares on the points near the plane, repeated with the reach that their scatter asks for.
 
     Args:
-        points: (m, 3) [m].
+        points: (3, m) [m].
         plane: (4,) to start from.
         reach: distance up to which points count at first [m].
 
     Returns:
         the plane (4,), robust standard deviation of the points about it and the reach that follows from it [m].
     """
-    across = np.ascontiguousarray(points.T)
-    some = across[:, :: max(1, len(points) // 4000)]
+    some = np.ascontiguousarray(points[:, :: max(1, points.shape[1] // _JUDGED)])
     noise = reach
     for _ in range(_ROUNDS):
-        fitted, _, count = _fitted(across, plane, reach)
+        fitted, _, count = _fitted(points, plane, reach)
         if count < 10:
             break
         plane = fitted
@@ -102,9 +102,9 @@ def _deviation(distance: FloatArray) -> float:
 
 
 @compiled_sums
-def _fitted(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatArray, FloatArray, int]:
-    """Plane (4,) fitted to those of the (3, n) points that lie within ``reach`` of another, their (3, 3) second
-    moments about their mean, and how many they are.
+def _fitted(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatArray, float, int]:
+    """Plane (4,) fitted to those of the (3, n) points that lie within ``reach`` of another, their variance across the
+    narrow direction in it, and how many they are.
     """
     a, b, c, d = plane[0], plane[1], plane[2], plane[3]
     x0, y0, z0 = points[0, 0], points[1, 0], points[2, 0]  # relative to a point, to keep the digits
@@ -126,7 +126,7 @@ def _fitted(points: FloatArray, plane: FloatArray, reach: float) -> tuple[FloatA
         moments[1, 2] = moments[2, 1] = yz / count - y * z
         _turn_to_least(moments, fitted)
         fitted[3] = -(fitted[0] * (x + x0) + fitted[1] * (y + y0) + fitted[2] * (z + z0))
-    return fitted, moments, int(count)
+    return fitted, _middle(moments, fitted), int(count)
 
 
 @compiled_part
@@ -153,7 +153,22 @@ def _turn_to_least(moments: FloatArray, plane: FloatArray) -> None:
         plane[0], plane[1], plane[2] = x / length, y / length, z / length
 
 
+@compiled_part
+def _middle(moments: FloatArray, normal: FloatArray) -> float:
+    """Middle one of the principal moments, where the least one is that along the normal; 0 for points on a line."""
+    least, minors, trace = 0.0, 0.0, moments[0, 0] + moments[1, 1] + moments[2, 2]
+    for i in range(3):
+        j = (i + 1) % 3
+        least += normal[i] * (moments[i, 0] * normal[0] + moments[i, 1] * normal[1] + moments[i, 2] * normal[2])
+        minors += moments[i, i] * moments[j, j] - moments[i, j] * moments[i, j]
+    both = trace - least
+    product = minors - least * both
+    return max(0.5 * (both - math.sqrt(max(both * both - 4.0 * product, 0.0))), 0.0)
+
+
 def plane_spread(points: FloatArray, plane: FloatArray, reach: float) -> tuple[int, float]:
-    """How many points lie within ``reach`` of the plane, and their standard deviation across its narrow direction."""
-    _, moments, count = _fitted(np.ascontiguousarray(points.T), plane, reach)
-    return int(count), float(np.sqrt(max(np.linalg.eigvalsh(moments)[1], 0.0)))
+    """How many of the (3, n) points lie within ``reach`` of the plane, and their standard deviation across its narrow
+    direction.
+    """
+    _, variance, count = _fitted(points, plane, reach)
+    return int(count), math.sqrt(variance)

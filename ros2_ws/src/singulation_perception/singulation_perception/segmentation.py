@@ -112,7 +112,9 @@ def segment_cloud(
         clock.lap("clusters")
     surfaces = surfaces_of(seen, step, None if flat is None else flat.cluster)
     clock.lap("surfaces")
-    view = View(table.table_from_camera[:3, 3], table.camera_plane, cloud if flat is None else None)
+    view = View(
+        np.ascontiguousarray(table.table_from_camera[:3, 3]), table.camera_plane, cloud if flat is None else None
+    )
     blocks = blocks_of(seen, surfaces, parameters, table.noise, view)
     clock.lap("outlines")
     dropped = {"outside": seen.outside, **blocks.dropped}

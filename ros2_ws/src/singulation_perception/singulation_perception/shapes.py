@@ -7,9 +7,11 @@ import numpy as np
 
 from singulation_core.polygon import FloatArray
 from singulation_perception.edge_fit import edges_of
-from singulation_perception.jit import compiled_maker
+from singulation_perception.jit import compiled_maker, compiled_part
 from singulation_perception.object_points import IntArray
 from singulation_perception.rings import ring_area
+
+_SHORTEST, _LEAST_AREA = 1e-6, 1e-7  # edge and area, in bounding radii and their squares, from which one is plain
 
 
 class Shape(NamedTuple):
@@ -20,17 +22,20 @@ class Shape(NamedTuple):
         y: of the area centroid.
         radius: of the bounding circle about the area centroid.
         length: longer side of the box around it, along one of its edges, whose longer side is shortest.
+        area: [m^2]; not a number unless the outline is plainly one that every object may have: it turns left at every
+            corner, once around in all, and has no tiny edge.
     """
 
     x: float
     y: float
     radius: float
     length: float
+    area: float
 
 
 @compiled_maker
 def shape_of(outline: FloatArray) -> Shape:
-    """Of a convex outline (k, 2), counter-clockwise [m]."""
+    """Of an outline (k, 2), convex and counter-clockwise but for rounding [m]."""
     total, x, y = 0.0, 0.0, 0.0
     for k in range(1, len(outline) - 1):
         ax, ay = outline[k, 0] - outline[0, 0], outline[k, 1] - outline[0, 1]
@@ -51,7 +56,28 @@ def shape_of(outline: FloatArray) -> Shape:
             ax, ay = outline[i, 0] * ux + outline[i, 1] * uy, outline[i, 1] * ux - outline[i, 0] * uy
             left, right, low, high = min(left, ax), max(right, ax), min(low, ay), max(high, ay)
         least = min(least, max(right - left, high - low) / size)
-    return Shape(x, y, radius, least)
+    plain = _turns_left(outline, radius) and total > _LEAST_AREA * radius * radius
+    return Shape(x, y, radius, least, 0.5 * total if plain else np.nan)
+
+
+@compiled_part
+def _turns_left(outline: FloatArray, radius: float) -> bool:
+    """Whether an outline turns left at every corner, once around in all, and no edge is as good as none.
+
+    Every turn is less than half a circle, so that the edges of one time around point down once and up once.
+    """
+    last = len(outline) - 1
+    ax, ay = outline[last, 0] - outline[last - 1, 0], outline[last, 1] - outline[last - 1, 1]
+    changes, least = 0, np.inf
+    for k in range(len(outline)):
+        bx, by = outline[k, 0] - outline[k - 1, 0], outline[k, 1] - outline[k - 1, 1]
+        if not (ax * by - ay * bx > 0.0):
+            return False
+        changes += (ay < 0.0) != (by < 0.0)
+        least = min(least, bx * bx + by * by)
+        ax, ay = bx, by
+    shortest = _SHORTEST * radius
+    return changes == 2 and least > shortest * shortest
 
 
 @compiled_maker
@@ -89,7 +115,7 @@ def meeting_pairs(shapes: FloatArray, heights: FloatArray, step: float) -> IntAr
     """(m, 2) lower and higher of all pairs of different height whose bounding circles meet.
 
     Args:
-        shapes: (n, 4) of the blocks, as in ``Shape``.
+        shapes: (n, 5) of the blocks, as in ``Shape``.
         heights: (n,) of the blocks [m].
         step: height difference from which one block is higher than another [m].
     """

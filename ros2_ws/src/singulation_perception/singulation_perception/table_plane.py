@@ -1,5 +1,6 @@
 """The table: where its plane is, how noisy the cloud is on it, or why it cannot be trusted."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,16 +67,17 @@ def find_table(
     expected = parameters.table_from_camera
     frame = np.eye(4) if expected is None else expected
     picked = sample(cloud, frame, None if expected is None else parameters.workspace)
-    if len(picked.located) < 100:
+    size = picked.located.shape[1]
+    if size < 100:
         raise SingulationError(
             ResultCode.NO_POINTS,
-            f"{len(picked.located)} sampled points lie in the workspace {parameters.workspace} m; check "
+            f"{size} sampled points lie in the workspace {parameters.workspace} m; check "
             "table_from_camera, workspace and that the camera sees the table",
         )
     plane = _start(picked, parameters, previous, frame)
     plane, noise, reach = refined_plane(picked.located, plane, 0.003 if expected is not None else _free_reach(picked))
     count, spread = plane_spread(picked.located, plane, reach)
-    share = count / len(picked.located)
+    share = count / size
     _require_plane(share, noise, spread, parameters)
     if expected is None:
         return TablePlane(_frame_from_plane(plane), noise, share, 0.0, 0.0, picked.columns, picked.pitch)
@@ -92,11 +94,11 @@ def _start(
     picked: CloudSample, parameters: SegmentationParameters, previous: TablePlane | None, frame: FloatArray
 ) -> FloatArray:
     """The plane to refine, normal towards the camera; where a table is expected, only points near it are asked."""
-    some = picked.located[:: max(1, len(picked.located) // _ASKED)]
+    some = picked.located[:, :: max(1, picked.located.shape[1] // _ASKED)]
     near, free = some, parameters.table_from_camera is None
     if not free:
-        near = some[np.abs(some[:, 2]) <= 2.0 * parameters.max_table_offset]
-        if len(near) < parameters.min_table_share * len(some):
+        near = some.compress(np.abs(some[2]) <= 2.0 * parameters.max_table_offset, axis=1)
+        if near.shape[1] < parameters.min_table_share * some.shape[1]:
             near = some  # then whatever plane there is, to say where it is
     last = None if previous is None else previous.camera_plane @ inverse(frame)
     if free:
@@ -131,9 +133,10 @@ def _near_expected(
     A camera is calibrated on a board in the workspace: there its pose is right even if its tilt is a little off.
     """
     x_min, x_max, y_min, y_max = parameters.workspace or (0.0, 0.0, 0.0, 0.0)
-    middle = np.array(((x_min + x_max) / 2, (y_min + y_max) / 2, 0.0))
-    tilt = float(np.arccos(np.clip(plane[2], -1.0, 1.0)))
-    offset = -float(plane[:3] @ middle + plane[3]) / max(float(plane[2]), 1e-9)
+    x, y = 0.5 * (x_min + x_max), 0.5 * (y_min + y_max)
+    a, b, c, d = plane.tolist()
+    tilt = math.acos(min(max(c, -1.0), 1.0))
+    offset = -(a * x + b * y + d) / max(c, 1e-9)
     if not (tilt <= parameters.max_table_tilt and abs(offset) <= parameters.max_table_offset):
         raise SingulationError(
             ResultCode.WRONG_TABLE,
@@ -142,17 +145,16 @@ def _near_expected(
             f"{np.degrees(parameters.max_table_tilt):.2f} degrees (max_table_offset, max_table_tilt). "
             "Is it the floor of a bin, was the camera moved, or is table_from_camera wrong?",
         )
-    correction = np.eye(4)
-    correction[:3, :3] = _turn_to_z(plane[:3])
-    correction[:3, 3] = middle - correction[:3, :3] @ (middle + (0.0, 0.0, offset))
-    return correction @ expected, offset, tilt
+    turn = _turn_to_z(a, b, c)
+    moved = [place - (row[0] * x + row[1] * y + row[2] * offset) for place, row in zip((x, y, 0.0), turn, strict=True)]
+    correction = [(*row, shift) for row, shift in zip(turn, moved, strict=True)]
+    return np.array((*correction, (0.0, 0.0, 0.0, 1.0))) @ expected, offset, tilt
 
 
-def _turn_to_z(normal: FloatArray) -> FloatArray:
-    """Smallest rotation that takes the unit normal (z > 0) to (0, 0, 1)."""
-    a, b, c = normal
+def _turn_to_z(a: float, b: float, c: float) -> tuple[tuple[float, float, float], ...]:
+    """Rows of the smallest rotation that takes the unit normal (a, b, c), c > 0, to (0, 0, 1)."""
     s = 1.0 / (1.0 + c)
-    return np.array(((1.0 - a * a * s, -a * b * s, -a), (-a * b * s, 1.0 - b * b * s, -b), (a, b, c)))
+    return (1.0 - a * a * s, -a * b * s, -a), (-a * b * s, 1.0 - b * b * s, -b), (a, b, c)
 
 
 def _frame_from_plane(plane: FloatArray) -> FloatArray:

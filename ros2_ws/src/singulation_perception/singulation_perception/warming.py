@@ -76,7 +76,7 @@ def _seldom() -> None:
     shadowed_edge(square, square, _PITCH, _PITCH, 0)
     shape_of(square)
     shared_area(square, square)
-    meeting_pairs(np.zeros((1, 4)), np.zeros(1), _PITCH)
+    meeting_pairs(np.zeros((1, 5)), np.zeros(1), _PITCH)
     shares(image.point, image.xyz, [square, square])
     ring = _ring_of_an_l()
     face_image(image.point, image.corner, image.xyz, ring, (ring / _PITCH).astype(np.int32))

@@ -6,7 +6,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from ros2_ws.src.singulation_perception.test.table_top import box, turned
 
-from singulation_core.polygon import area_centroid, bounding_radius, convex_hull, signed_area
+from singulation_core import InvalidInputError
+from singulation_core.polygon import area_centroid, bounding_radius, convex_hull, measured_outline, signed_area
 from singulation_perception.piles import cut_off
 from singulation_perception.shapes import meeting_pairs, shape_of, shared_area
 
@@ -39,6 +40,34 @@ def test_centre_and_radius_are_those_of_the_object(outline):
 TINY = np.array(((-1e-259, 0.0), (0.0, -1e-147), (0.25, 0.0), (0.0, 0.25)))  # products of such numbers are 0
 
 
+@given(outline=outlines())
+def test_hulls_are_plain_and_have_an_area(outline):
+    area = shape_of(outline).area
+    assert area == pytest.approx(signed_area(outline)) or has_a_tiny_edge(outline)
+
+
+def has_a_tiny_edge(outline):
+    edges = np.hypot(*(outline - np.roll(outline, 1, axis=0)).T)
+    return edges.min() < 1e-5 * edges.max()
+
+
+@given(corners=st.lists(st.tuples(*[NUMBERS | st.sampled_from((0.0, 0.1, np.nan))] * 2), min_size=3, max_size=7))
+@example(corners=[(np.cos(k * 0.8 * np.pi), np.sin(k * 0.8 * np.pi)) for k in range(5)])  # a star, twice around
+@example(corners=[(0.0, 0.0), (0.1, 0.0), (0.1, 0.1), (0.05, 0.04), (0.0, 0.1)])  # a dent
+@example(corners=[(0.0, 0.0), (0.0, 0.1), (0.1, 0.1), (0.1, 0.0)])  # clockwise
+@example(corners=[(0.0, 0.0), (0.1, 1e-12), (0.2, 1e-11)])  # a line
+@example(corners=[(0.0, 0.0), (0.1, 0.0), (0.1, 1e-12), (0.0, 0.1)])  # a corner twice
+def test_what_is_plain_passes_the_checks_of_every_object(corners):
+    outline = np.array(corners)
+    shape = shape_of(outline)
+    try:
+        measured = measured_outline(outline)
+    except InvalidInputError:
+        assert np.isnan(shape.area)
+    else:
+        assert np.isnan(shape.area) or shape.area == pytest.approx(measured.area, rel=1e-9)
+
+
 @given(one=outlines(), two=outlines())
 @example(one=np.array(((-1e-147, 0.0), (0.02, 0.0), (0.01, 0.02))), two=TINY)
 def test_what_two_outlines_share_is_what_the_edges_of_one_leave_of_the_other(one, two):
@@ -53,7 +82,8 @@ def test_what_two_outlines_share_is_what_the_edges_of_one_leave_of_the_other(one
 
 
 def test_pairs_are_those_of_different_height_whose_circles_meet():
-    shapes = np.array(((0.0, 0.0, 0.03, 0.0), (0.05, 0.0, 0.03, 0.0), (0.2, 0.0, 0.03, 0.0), (0.0, 0.05, 0.03, 0.0)))
+    places = ((0.0, 0.0), (0.05, 0.0), (0.2, 0.0), (0.0, 0.05))
+    shapes = np.array([(x, y, 0.03, 0.0, 0.0) for x, y in places])
     heights = np.array((0.02, 0.03, 0.04, 0.0205))
     assert meeting_pairs(shapes, heights, 0.001).tolist() == [[0, 1]]
     assert meeting_pairs(shapes[:0], heights[:0], 0.001).tolist() == []
