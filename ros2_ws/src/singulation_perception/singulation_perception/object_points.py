@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from singulation_core.polygon import FloatArray
 from singulation_perception.byte_scan import end_of, repeated
 from singulation_perception.cloud_sample import Workspace
-from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, X, Y, coordinates, marked_blocks
+from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, coordinates, marked_blocks
 from singulation_perception.jit import compiled_part, compiled_part_sums, compiled_sums
 from singulation_perception.prefetch import LINE, prefetch
 from singulation_perception.raster import Raster
@@ -96,10 +96,9 @@ def _collect(
     spans: FloatArray,
 ) -> tuple[int, int, int]:
     """Numbers of points and runs written, and of points outside; -1 points if there is no room for all."""
-    x, y = np.empty(cloud.width, dtype=np.float32), np.empty(cloud.width, dtype=np.float32)
-    height, kind = np.empty(cloud.width, dtype=np.float32), np.zeros((cloud.width + 7) // 8 * 8, dtype=np.uint8)
-    words, numbers = kind.view(np.uint64), xyz.reshape(-1)
-    count, run, outside = 0, 0, 0
+    height, kind = np.empty(cloud.width + 2, dtype=np.float32), np.zeros((cloud.width + 7) // 8 * 8, dtype=np.uint8)
+    bits, words, numbers = height.view(np.int32), kind.view(np.uint64), xyz.reshape(-1)
+    count, run, outside = np.int64(0), np.int64(0), 0
     for row in range(cloud.height):
         stop, right = np.int64(columns[row, 0]), np.int64(columns[row, 1])
         if count + right - stop > len(xyz) or run + right - stop > len(runs):
@@ -112,19 +111,23 @@ def _collect(
             for at in range(begin * cloud.point_step, stop * cloud.point_step, LINE):
                 prefetch(cloud.numbers, ahead + at)
             coordinates(cloud, row, begin, pose, HEIGHT, height, stop - begin)
-            coordinates(cloud, row, begin, pose, X, x, stop - begin)
-            coordinates(cloud, row, begin, pose, Y, y, stop - begin)
-            outside += _classify(x, y, height, kind, stop - begin, limits, lowest, pose[2, 3], step)
+            _classify(height, kind, stop - begin, lowest, pose[2, 3], step)
             size = np.uintp(stop - begin)
             first = end_of(words, np.uintp(0), size, _ALL_NOTHING)
             while first < size:
                 end = first + np.uintp(1)
                 if end < size:
                     end = end_of(words, end, size, _ALL_GO_ON)
-                runs[run, ROW], runs[run, FIRST] = row, count
-                runs[run, START], runs[run, STOP] = begin + first, begin + end
-                count = _take(x, y, height, first, end, numbers, np.int64(count), spans, np.int64(run))
-                run += 1
+                column, length = begin + np.int64(first), np.int64(end - first)
+                inside = _locate(cloud, row, column, pose, limits, height, first, length, numbers, count)
+                if inside == length:
+                    _note(runs, spans, run, row, column, count, height, bits, first, length)
+                    count, run = count + length, run + 1
+                elif inside > 0:
+                    count, run = _crop(
+                        runs, spans, run, row, column, count, height, bits, first, length, numbers, limits
+                    )
+                outside += length - inside
                 first = end_of(words, end, size, _ALL_NOTHING) if end < size else size
     return count, run, outside
 
@@ -143,72 +146,133 @@ def _marked(marks: Marks, begin: int, right: int) -> tuple[int, int]:
 
 @compiled_part_sums
 def _classify(
-    x: Values,
-    y: Values,
-    height: Values,
-    kind: NDArray[np.uint8],
-    size: int,
-    limits: NDArray[np.float32],
-    lowest: np.float32,
-    nowhere: np.float32,
-    step: np.float32,
-) -> int:
-    """Says of each point whether it belongs to an object, and whether to the run of the one before; how many would but
-    for the workspace.
+    height: Values, kind: NDArray[np.uint8], size: int, lowest: np.float32, nowhere: np.float32, step: np.float32
+) -> None:
+    """Says of each point whether it may belong to an object, and whether to the run of the one before.
 
     Only ``nowhere``, the height of (0, 0, 0), is that high: what is not a point counts as low.
     """
-    x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
-    outside = 0
     for k in range(size):
         i = np.uintp(k)
-        high = (height[i] > lowest) & (height[i] < _TOO_FAR) & (height[i] != nowhere)
-        inside = (x[i] >= x_min) & (x[i] <= x_max) & (y[i] >= y_min) & (y[i] <= y_max)
-        kind[i] = np.uint8(high & inside)
-        outside += high & ~inside
+        kind[i] = np.uint8((height[i] > lowest) & (height[i] < _TOO_FAR) & (height[i] != nowhere))
     for k in range(size - 1):
         one, two = np.uintp(size - 2 - k), np.uintp(size - 1 - k)
         near = (kind[one] == _BEGINS) & (kind[two] == _BEGINS) & (abs(height[two] - height[one]) <= step)
         kind[two] += np.uint8(near)
-    return outside
 
 
 @compiled_part_sums
-def _take(
-    x: Values,
-    y: Values,
+def _locate(
+    cloud: Raster,
+    row: int,
+    column: int,
+    pose: NDArray[np.float32],
+    limits: NDArray[np.float32],
     height: Values,
     first: np.uintp,
-    end: np.uintp,
+    length: int,
     numbers: Values,
     count: int,
+) -> int:
+    """Writes the points of a run, which begins at ``first`` among the heights, behind the ``count`` written ones; how
+    many of them lie inside the workspace.
+
+    Into a flat array and with a known step, which makes vector instructions of it.
+    """
+    seen, point_step = cloud.numbers, np.uintp(cloud.point_step)
+    start, at = np.uintp(row * cloud.row_step + column * cloud.point_step), np.uintp(3 * count)
+    one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
+    xa, xb, xc, xd = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]  # read once: what is written might be theirs
+    ya, yb, yc, yd = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
+    x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
+    inside = 0
+    if point_step == three:
+        for k in range(length):
+            i = np.uintp(k)
+            p, to = start + three * i, at + three * i
+            a, b, c = seen[p], seen[p + one], seen[p + two]
+            x, y = a * xa + b * xb + c * xc + xd, a * ya + b * yb + c * yc + yd
+            numbers[to], numbers[to + one], numbers[to + two] = x, y, height[first + i]
+            inside += (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
+    else:
+        for k in range(length):
+            i = np.uintp(k)
+            p, to = start + point_step * i, at + three * i
+            a, b, c = seen[p], seen[p + one], seen[p + two]
+            x, y = a * xa + b * xb + c * xc + xd, a * ya + b * yb + c * yc + yd
+            numbers[to], numbers[to + one], numbers[to + two] = x, y, height[first + i]
+            inside += (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
+    return inside
+
+
+@compiled_part
+def _is_inside(x: np.float32, y: np.float32, limits: NDArray[np.float32]) -> bool:
+    return (x >= limits[0]) & (x <= limits[1]) & (y >= limits[2]) & (y <= limits[3])
+
+
+@compiled_part
+def _crop(
+    runs: IntArray,
     spans: FloatArray,
     run: int,
-) -> np.int64:
-    """Writes the points of a run and its span; how many points are written then.
-
-    In a flat array, because a known step makes vector instructions; so do sums of small differences, which single
-    precision holds.
+    row: int,
+    column: int,
+    count: int,
+    height: Values,
+    bits: IntArray,
+    first: np.uintp,
+    length: int,
+    numbers: Values,
+    limits: NDArray[np.float32],
+) -> tuple[int, int]:
+    """Notes the parts of a written run that lie inside the workspace, their points moved together; how many points and
+    runs there are then.
     """
-    at = np.uintp(3 * count)
-    one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
-    for k in range(end - first):
-        i = np.uintp(k)
-        numbers[at + three * i], numbers[at + three * i + one] = x[first + i], y[first + i]
-        numbers[at + three * i + two] = height[first + i]
+    written, begun = count, np.int64(0)
+    for k in range(length + 1):
+        at = 3 * (written + k)
+        if k < length and _is_inside(numbers[at], numbers[at + 1], limits):
+            to = 3 * (count + k - begun)
+            numbers[to], numbers[to + 1], numbers[to + 2] = numbers[at], numbers[at + 1], numbers[at + 2]
+            continue
+        if k > begun:
+            _note(runs, spans, run, row, column + begun, count, height, bits, first + np.uintp(begun), k - begun)
+            count, run = count + k - begun, run + 1
+        begun = np.int64(k + 1)
+    return count, run
+
+
+@compiled_part_sums
+def _note(
+    runs: IntArray,
+    spans: FloatArray,
+    run: int,
+    row: int,
+    column: int,
+    count: int,
+    height: Values,
+    bits: IntArray,
+    first: np.uintp,
+    length: int,
+) -> None:
+    """Writes a run and its span, with vector instructions: sums of small differences, which single precision holds, and
+    least and greatest bits, for positive numbers are ordered as their bits. The last two places are worked in.
+    """
+    runs[run, ROW], runs[run, START], runs[run, STOP], runs[run, FIRST] = row, column, column + length, count
     level, total, squares = height[first], np.float32(0.0), np.float32(0.0)
-    for k in range(end - first):
+    for k in range(length):
         more = height[first + np.uintp(k)] - level
         total += more
         squares += more * more
-    low, high = level, level
-    for k in range(end - first):
-        value = height[first + np.uintp(k)]
+    low, high = bits[first], bits[first]
+    for k in range(length):
+        value = bits[first + np.uintp(k)]
         low, high = min(low, value), max(high, value)
-    count_of_run, base = np.float64(end - first), np.float64(level)
-    spans[run, LOW], spans[run, HIGH], spans[run, SUM] = low, high, count_of_run * base + total
-    spans[run, SQUARES] = count_of_run * base * base + 2.0 * base * total + squares
-    return count + np.int64(end - first)
+    least, greatest = np.uintp(len(bits) - 2), np.uintp(len(bits) - 1)
+    bits[least], bits[greatest] = low, high
+    base = np.float64(level)
+    spans[run, LOW], spans[run, HIGH], spans[run, SUM] = height[least], height[greatest], length * base + total
+    spans[run, SQUARES] = length * base * base + 2.0 * base * total + squares
 
 
 @compiled_part
