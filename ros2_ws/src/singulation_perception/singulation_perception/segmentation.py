@@ -12,8 +12,9 @@ from singulation_perception.block_search import Blocks, blocks_of
 from singulation_perception.coarse_look import rows_between
 from singulation_perception.flat_clouds import FlatCloud, flat_cloud
 from singulation_perception.hidden import View
-from singulation_perception.object_points import ObjectPoints, object_points
+from singulation_perception.object_points import ObjectPoints
 from singulation_perception.parameters import SegmentationParameters
+from singulation_perception.point_collection import object_points
 from singulation_perception.point_labels import labels_in_image
 from singulation_perception.raster import raster_of
 from singulation_perception.surfaces import surfaces_of

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from ros2_ws.src.singulation_perception.test.table_top import PARAMETERS, box, cloud
 
 from singulation_perception.coarse_look import BLOCK, marked_blocks, rows_between
-from singulation_perception.object_points import object_points
+from singulation_perception.point_collection import object_points
 from singulation_perception.raster import raster_of
 from singulation_perception.table_plane import find_table
 
