@@ -56,7 +56,7 @@ def test_more_points_than_usual_change_nothing(monkeypatch, room):
     """What is set aside for points and runs at first is too small; all of it is collected again with room for all."""
     points = cloud(*BLOCKS)
     usual = segment(points, PARAMETERS)
-    monkeypatch.setattr("singulation_perception.object_points._ROOM", room)
+    monkeypatch.setattr("singulation_perception.point_collection._ROOM", room)
     crowded = segment(points, PARAMETERS)
     assert [one.point_count for one in crowded.objects] == [one.point_count for one in usual.objects]
     for one, other in zip(crowded.objects, usual.objects, strict=True):
