@@ -12,7 +12,7 @@ from numba import njit
 from numba.core.dispatcher import Dispatcher
 
 from singulation_core.claimed_cache import ClaimedCache
-from singulation_core.late_options import LateOptions, pipeline
+from singulation_core.late_options import LateOptions, arguments
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -64,9 +64,7 @@ def compiled_inline(function: Function) -> Function:
 
 
 def _compiled(function: Function, late: LateOptions) -> Function:
-    done: Function = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, pipeline_class=pipeline(late))(
-        function
-    )
+    done: Function = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, **arguments(late))(function)
     return done
 
 

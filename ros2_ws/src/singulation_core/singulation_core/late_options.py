@@ -6,18 +6,23 @@ then, all functions share what is remembered. And a function that only others ca
 and need not be optimised before it is part of one of them. Together this takes a sixth off the compiling of
 singulation_perception, and its functions run as fast.
 
-Numba documents pipelines and passes of one's own ("Customizing the compiler"); the methods of its code library that are
-replaced here are internal, and a Numba without them would only compile longer.
+Numba documents pipelines and passes of one's own ("Customizing the compiler"), but the methods of its code library that
+are replaced here are internal. So this is done with the versions that it was tried with; any other hears of the options
+at once and compiles longer.
 """
 
 from functools import cache
 from typing import Any, NamedTuple
 
+from numba import version_info
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import AnalysisPass, PassManager, register_pass
 from numba.core.cpu import FastMathOptions
 from numba.core.typed_passes import IRLegalization
+
+_TRIED = ((0, 68),)
+_ANY_ORDER = {"reassoc", "contract"}
 
 
 class LateOptions(NamedTuple):
@@ -36,9 +41,16 @@ class LateOptions(NamedTuple):
     counting: bool = True
 
 
+def arguments(options: LateOptions) -> dict[str, Any]:
+    """Keyword arguments of ``numba.njit`` for these options."""
+    if version_info.short in _TRIED:
+        return {"pipeline_class": _pipeline(options)}
+    fastmath = _ANY_ORDER if options.any_order else False
+    return {"no_cpython_wrapper": options.part, "forceinline": options.inline, "fastmath": fastmath}
+
+
 @cache
-def pipeline(options: LateOptions) -> type[CompilerBase]:
-    """The compiler with these options, as ``pipeline_class`` of ``numba.njit``."""
+def _pipeline(options: LateOptions) -> type[CompilerBase]:
 
     @register_pass(mutates_CFG=False, analysis_only=True)
     class Set(AnalysisPass):  # type: ignore[misc]  # Numba has no types
@@ -68,7 +80,7 @@ def _set(options: LateOptions, state: Any) -> None:
         flags.no_cpython_wrapper = True
         state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
     if options.any_order:
-        flags.fastmath = FastMathOptions({"reassoc", "contract"})
+        flags.fastmath = FastMathOptions(_ANY_ORDER)
         state.targetctx = state.targetctx.subtarget(fastmath=flags.fastmath)
     if not options.counting:
         flags.nrt = False

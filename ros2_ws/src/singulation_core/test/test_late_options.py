@@ -1,0 +1,60 @@
+"""Functions compiled with options that Numba hears of late, or at once, do the same."""
+
+import numpy as np
+import pytest
+
+from singulation_core import late_options
+from singulation_core.jit import compiled_inline, compiled_maker, compiled_part, compiled_part_maker, compiled_sums
+from singulation_core.late_options import LateOptions
+
+
+@pytest.fixture(params=["a Numba that was tried", "another"])
+def version(request, monkeypatch):
+    if request.param == "another":
+        monkeypatch.setattr(late_options, "_TRIED", ())
+
+
+def made(decorator):
+    @compiled_inline
+    def twice(x):
+        return x + x
+
+    @compiled_part
+    def fill(values, x):
+        for k in range(len(values)):
+            values[k] = twice(x) + k
+
+    @compiled_part_maker
+    def filled(count, x):
+        values = np.empty(count)
+        fill(values, x)
+        return values
+
+    @decorator
+    def total(count, x):
+        values = filled(count, x)
+        result = 0.0
+        for k in range(len(values)):
+            result += values[k]
+        return result
+
+    return total
+
+
+@pytest.mark.usefixtures("version")
+@pytest.mark.parametrize("decorator", [compiled_maker, compiled_sums])
+def test_parts_of_all_kinds_are_called(decorator):
+    assert made(decorator)(4, 0.5) == pytest.approx(4 * 1.0 + 6.0)
+
+
+@pytest.mark.usefixtures("version")
+def test_sums_may_be_added_up_in_any_order_only_where_that_was_said():
+    for decorator, wanted in ((compiled_maker, False), (compiled_sums, True)):
+        total = made(decorator)
+        total.compile("(i8, f8)")
+        code = "".join(total.inspect_llvm().values())
+        assert ("fadd reassoc" in code) is wanted
+
+
+def test_the_numba_that_is_installed_was_tried():
+    assert "pipeline_class" in late_options.arguments(LateOptions())
