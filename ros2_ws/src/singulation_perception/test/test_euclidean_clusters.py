@@ -16,8 +16,8 @@ def partition(labels):
 
 
 def reference(points, tolerance):
-    """Connected components of all pairs nearer than the tolerance, in single precision as PCL reckons: points in rows may
-    be exactly that far apart.
+    """Connected components of all pairs nearer than the tolerance, in single precision as PCL reckons: points in rows
+    may be exactly that far apart.
     """
     pairs = cKDTree(points.astype(np.float64)).query_pairs(1.001 * tolerance, output_type="ndarray")
     x, y, z = (points[pairs[:, 0]] - points[pairs[:, 1]]).T
