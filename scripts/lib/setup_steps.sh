@@ -132,8 +132,8 @@ colcon_build() ( # route; in a subshell, for its folder and environment
     --cmake-args -DBUILD_TESTING=OFF -DPython3_EXECUTABLE="$VENV/bin/python" -DPython3_FIND_VIRTUALENV=ONLY
 )
 
-kernel_sources() { # files with compiled functions
-  grep -rlE --include='*.py' '^@(njit|compiled)' "$WORKSPACE/src" | sort
+kernel_sources() { # files with compiled functions, and those that say how they are compiled
+  grep -rlE --include='*.py' '^@(njit|compiled)|numba\.njit|njit\(' "$WORKSPACE/src" | sort
 }
 
 ensure_compiled() {

@@ -8,11 +8,15 @@ as much: ``math.sqrt`` instead of ``np.sqrt``, ``x * x`` instead of ``x ** 2``, 
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from numba import njit
+from numba import njit, version_info
 from numba.core.dispatcher import Dispatcher
 
 from singulation_core.claimed_cache import ClaimedCache
-from singulation_core.late_options import LateOptions, arguments
+from singulation_core.compile_options import CompileOptions, said_at_once
+
+_LATE = version_info.short == (0, 68)  # another Numba may lack what the late compiler replaces
+if _LATE:
+    from singulation_core.late_compiler import late_compiler
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -23,17 +27,17 @@ def compiled(function: Function) -> Function:
     Such a function needs no reference counts. With them, calls that pass two dozen arrays took three quarters of the
     time of a push.
     """
-    return _kept(_compiled(function, LateOptions(counting=False)))
+    return _kept(_compiled(function, CompileOptions(counting=False)))
 
 
 def compiled_maker(function: Function) -> Function:
     """As ``compiled``, for a function that makes arrays: it counts references."""
-    return _kept(_compiled(function, LateOptions()))
+    return _kept(_compiled(function, CompileOptions()))
 
 
 def compiled_sums(function: Function) -> Function:
     """As ``compiled_maker``, where sums may be added up in any order: that makes vector instructions of them."""
-    return _kept(_compiled(function, LateOptions(any_order=True)))
+    return _kept(_compiled(function, CompileOptions(any_order=True)))
 
 
 def compiled_part(function: Function) -> Function:
@@ -41,17 +45,17 @@ def compiled_part(function: Function) -> Function:
 
     Without an entry for Python and a cache of its own it compiles in a fraction of the time. Python must not call it.
     """
-    return _compiled(function, LateOptions(part=True, counting=False))
+    return _compiled(function, CompileOptions(part=True, counting=False))
 
 
 def compiled_part_maker(function: Function) -> Function:
     """As ``compiled_part``, for a function that makes arrays."""
-    return _compiled(function, LateOptions(part=True))
+    return _compiled(function, CompileOptions(part=True))
 
 
 def compiled_part_sums(function: Function) -> Function:
     """As ``compiled_sums``, for a function that only compiled ones call."""
-    return _compiled(function, LateOptions(part=True, any_order=True))
+    return _compiled(function, CompileOptions(part=True, any_order=True))
 
 
 def compiled_inline(function: Function) -> Function:
@@ -60,11 +64,12 @@ def compiled_inline(function: Function) -> Function:
     A call that passes on a few tuples of arrays copies some 200 words; for contacts of two blocks that took a third of
     the time of a push.
     """
-    return _compiled(function, LateOptions(part=True, inline=True, counting=False))
+    return _compiled(function, CompileOptions(part=True, inline=True, counting=False))
 
 
-def _compiled(function: Function, late: LateOptions) -> Function:
-    done: Function = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, **arguments(late))(function)
+def _compiled(function: Function, options: CompileOptions) -> Function:
+    told = {"pipeline_class": late_compiler(options)} if _LATE else said_at_once(options)
+    done: Function = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, **told)(function)
     return done
 
 

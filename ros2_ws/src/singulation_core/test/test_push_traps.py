@@ -15,6 +15,7 @@ from singulation_core import (
     smallest_gap,
 )
 from singulation_core.push_world import Disc, Footprint, PushPhysics, PushWorld, simulate_push, simulate_pushes
+from singulation_core.push_world.overlap import _clipped
 
 SIDE = 0.02 * np.sqrt(2.0)  # of the square block
 PRESETS = ("quasi_static", "fine", "fast", "authors")
@@ -57,6 +58,11 @@ def test_noisy_poses_of_random_blocks_give_no_gain(scene_of):
         scene = scene_of(seed)
         noisy = Arrangement([o.moved(random.normal(0.0, 0.003, 2), random.normal(0.0, 0.05)) for o in scene.objects])
         assert gain(noisy, simulate_push(noisy, AWAY, None, JAWS)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_corner_on_the_border_of_an_overlap_is_there_once():
+    diamond = np.array(((0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)))
+    assert _clipped(diamond, diamond[:, 1]).tolist() == [[0.0, -1.0], [1.0, 0.0], [-1.0, 0.0]]
 
 
 @pytest.mark.parametrize("preset", PRESETS)

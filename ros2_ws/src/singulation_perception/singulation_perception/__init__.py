@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import singulation_core
 from singulation_perception.compiled_caches import drop_stale_caches
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.segmentation import Segmentation, segment, segment_cloud
@@ -11,4 +12,5 @@ from singulation_perception.warming import warm_up
 
 __all__ = ["Segmentation", "SegmentationParameters", "TablePlane", "segment", "segment_cloud", "warm_up"]
 
-drop_stale_caches(Path(__file__).parent, Path(connected_runs.stats.cache_path))
+_SOURCES = [Path(__file__).parent, Path(singulation_core.__file__).parent]
+drop_stale_caches(_SOURCES, Path(connected_runs.stats.cache_path))

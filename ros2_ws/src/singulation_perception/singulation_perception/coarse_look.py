@@ -13,7 +13,6 @@ from singulation_perception.jit import compiled_part_sums, compiled_sums
 from singulation_perception.prefetch import LINE, prefetch
 from singulation_perception.raster import Raster
 
-X, Y, HEIGHT = np.int64(0), np.int64(1), np.int64(2)  # all of one kind, so that what takes them is compiled once
 BLOCK = 16  # columns that are looked at together
 _MOST = 6  # rows: more would hardly save any reading
 _SHARE = 0.5  # of the least width of a block between two rows that are looked at
@@ -78,7 +77,7 @@ def _mark(
         ahead = min(row + stride, cloud.height - 1) * cloud.row_step + first * BLOCK * cloud.point_step
         for at in range(0, count * cloud.point_step, LINE):
             prefetch(cloud.numbers, ahead + at)
-        coordinates(cloud, row, first * BLOCK, pose, HEIGHT, levels, count)
+        heights(cloud, row, first * BLOCK, pose, levels, count)
         for i in range(count, -(-count // BLOCK) * BLOCK):
             levels[i] = -np.inf
         for block in range(-(-count // BLOCK)):
@@ -91,15 +90,13 @@ def _mark(
 
 
 @compiled_part_sums
-def coordinates(
-    cloud: Raster, row: int, first: int, pose: NDArray[np.float32], axis: int, values: Values, count: int
-) -> None:
-    """One coordinate in ``table`` of ``count`` points of a row.
+def heights(cloud: Raster, row: int, first: int, pose: NDArray[np.float32], values: Values, count: int) -> None:
+    """Heights above ``table`` of ``count`` points of a row.
 
     Unsigned indices and a known step make vector instructions of it.
     """
     numbers, point_step = cloud.numbers, np.uintp(cloud.point_step)
-    a, b, c, d = pose[axis, 0], pose[axis, 1], pose[axis, 2], pose[axis, 3]
+    a, b, c, d = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
     one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
     start = np.uintp(row * cloud.row_step + first * cloud.point_step)
     if point_step == three:

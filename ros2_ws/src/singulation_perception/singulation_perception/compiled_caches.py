@@ -4,22 +4,24 @@ Numba keeps compiled functions on disk and compiles anew when a function's own f
 that it calls has changed in another file. After an update some compiled functions would then still contain old code.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
+_SIGNS = (b"@compiled", b"njit")  # of a file with compiled functions, or one that says how they are compiled
 
-def drop_stale_caches(sources: Path, caches: Path) -> int:
-    """Removes compiled functions older than the newest source file that has any.
+
+def drop_stale_caches(sources: Sequence[Path], caches: Path) -> int:
+    """Removes compiled functions older than the newest source file that has any or says how they are compiled.
 
     Args:
-        sources: folder of the package.
+        sources: folders of the package and of what it is compiled with.
         caches: folder in which its compiled functions are kept.
 
     Returns:
         How many files were removed. What may not be removed stays.
     """
-    newest = max(
-        (file.stat().st_mtime for file in sources.glob("*.py") if b"@compiled" in file.read_bytes()), default=0.0
-    )
+    files = [file for folder in sources for file in folder.glob("*.py")]
+    newest = max((file.stat().st_mtime for file in files if _matters(file.read_bytes())), default=0.0)
     removed = 0
     for file in (*caches.glob("*.nbi"), *caches.glob("*.nbc")):
         try:
@@ -29,3 +31,7 @@ def drop_stale_caches(sources: Path, caches: Path) -> int:
         except OSError:  # another process was faster, or the folder is read-only
             continue
     return removed
+
+
+def _matters(text: bytes) -> bool:
+    return any(sign in text for sign in _SIGNS)

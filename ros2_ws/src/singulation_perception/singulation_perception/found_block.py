@@ -45,7 +45,7 @@ class FoundBlock:
     def planar_object(self, number: int) -> PlanarObject:
         """The block as it is published; its outline is looked at more closely if it is not plainly convex."""
         shape = self.shape
-        if not (shape.area > 0.0):
+        if not (0.0 < shape.area < np.inf):
             return PlanarObject(number, self.outline, self.height, self.count, self.confidence)
         outline, centroid = self.outline.copy(), np.array((shape.x, shape.y))
         outline.flags.writeable = centroid.flags.writeable = False

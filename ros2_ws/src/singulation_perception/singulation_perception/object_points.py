@@ -9,7 +9,6 @@ from singulation_core.polygon import FloatArray
 from singulation_perception.jit import compiled_part
 
 IntArray = NDArray[np.int32]
-Points = NDArray[np.float32]
 
 ROW, START, STOP, FIRST = 0, 1, 2, 3  # columns of a table of runs
 LOW, HIGH, SUM, SQUARES = 0, 1, 2, 3  # columns of the spans of runs

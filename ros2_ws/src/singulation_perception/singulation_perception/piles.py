@@ -68,7 +68,7 @@ def cut_off(outline: FloatArray, normal: FloatArray, offset: float) -> FloatArra
         j = (k + 1) % len(outline)
         if side[k] >= 0.0:
             kept.append(outline[k])
-        if (side[k] >= 0.0) != (side[j] >= 0.0):
+        if min(side[k], side[j]) < 0.0 < max(side[k], side[j]):
             kept.append(outline[k] + (outline[j] - outline[k]) * side[k] / (side[k] - side[j]))
     return np.array(kept).reshape(-1, 2)
 

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from singulation_core.polygon import FloatArray
 from singulation_perception.byte_scan import end_of, repeated
 from singulation_perception.cloud_sample import Workspace
-from singulation_perception.coarse_look import BLOCK, HEIGHT, Marks, Values, coordinates, marked_blocks
+from singulation_perception.coarse_look import BLOCK, Marks, Values, heights, marked_blocks
 from singulation_perception.jit import compiled_part, compiled_part_sums, compiled_sums
 from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.point_runs import crop, locate, note
@@ -36,7 +36,7 @@ def object_points(
         table_from_camera: 4x4 of the fitted table.
         workspace: limits in ``table``, or None.
         columns: (H, 2) first column and column after the last to look at, in each row.
-        lowest: height from which a point belongs to an object [m].
+        lowest: height from which a point belongs to an object, more than 0 [m].
         step: height difference at which a run ends [m].
         stride: rows between two that are looked at to find out where the others are, see ``coarse_look``.
     """
@@ -86,7 +86,7 @@ def _collect(
             ahead = min(row + _AHEAD, cloud.height - 1) * cloud.row_step
             for at in range(begin * cloud.point_step, stop * cloud.point_step, LINE):
                 prefetch(cloud.numbers, ahead + at)
-            coordinates(cloud, row, begin, pose, HEIGHT, height, stop - begin)
+            heights(cloud, row, begin, pose, height, stop - begin)
             _classify(height, kind, stop - begin, lowest, pose[2, 3], step)
             size = np.uintp(stop - begin)
             first = end_of(words, np.uintp(0), size, _ALL_NOTHING)

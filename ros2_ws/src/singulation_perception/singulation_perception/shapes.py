@@ -100,7 +100,7 @@ def shared_area(one: FloatArray, two: FloatArray) -> tuple[float, float, float]:
             if a >= 0.0 and size < room:
                 kept[size, 0], kept[size, 1] = points[i, 0], points[i, 1]
                 size += 1
-            if (a >= 0.0) != (b >= 0.0) and size < room:  # a product of tiny numbers has no sign
+            if min(a, b) < 0.0 < max(a, b) and size < room:  # a product of tiny numbers has no sign
                 f = a / (a - b)
                 kept[size, 0] = points[i, 0] + f * (points[j, 0] - points[i, 0])
                 kept[size, 1] = points[i, 1] + f * (points[j, 1] - points[i, 1])

@@ -31,7 +31,7 @@ def warm_up() -> None:
 
     With empty caches this compiles for half a minute; after that it takes about a second.
     """
-    _cluster()  # what a helper does not begin with comes first, for it to be done with the rest by then
+    _cluster()  # first what no helper begins with on two cores: meanwhile it compiles the rest
     _seldom()
     _see_image()
     _see_points()
@@ -85,7 +85,8 @@ def _seldom() -> None:
 
 
 # What helper processes begin with, each with another one: what comes last in the warm-up and takes longest to compile.
-# Each step has its functions for itself, parts included, so that none waits for another process or compiles the same.
+# Most functions, and the parts they are made of, belong to one step, so that hardly any process waits for another or
+# compiles a part twice.
 STEPS: tuple[Callable[[], None], ...] = (_cluster, _cut, _outline, _seldom, _see_image, _see_points)
 
 

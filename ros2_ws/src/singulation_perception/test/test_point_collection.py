@@ -26,10 +26,12 @@ def clouds(draw):
     return cloud
 
 
-def plainly(cloud, pose, workspace):
+def plainly(cloud, columns, pose, workspace):
     """Points, runs and how many points lie outside, one after the other."""
     points, runs, outside = [], [], 0
     for row, column in np.ndindex(cloud.shape[:2]):
+        if not (columns[row, 0] <= column < columns[row, 1]):
+            continue
         place = cloud[row, column].astype(np.float32)
         if not np.isfinite(place).all() or not place.any():
             continue
@@ -48,14 +50,32 @@ def plainly(cloud, pose, workspace):
     return np.array(points).reshape(-1, 3), np.array(runs).reshape(-1, 4), outside
 
 
-@settings(max_examples=200)
-@given(cloud=clouds(), workspace=st.sampled_from((None, WORKSPACE)), shift=st.floats(-0.05, 0.05))
-def test_points_runs_and_spans_are_those_found_one_by_one(cloud, workspace, shift):
+@st.composite
+def poses(draw):
+    """(4, 4) of a camera half a metre away, turned about its line of sight and a little beside it."""
+    spin, tilt, shift = draw(st.floats(-3.0, 3.0)), draw(st.sampled_from((0.0, 0.01))), draw(st.floats(-0.05, 0.05))
+    turned, tilted = np.eye(3), np.eye(3)
+    turned[:2, :2] = (np.cos(spin), -np.sin(spin)), (np.sin(spin), np.cos(spin))
+    tilted[1:, 1:] = (np.cos(tilt), -np.sin(tilt)), (np.sin(tilt), np.cos(tilt))
     pose = np.eye(4)
-    pose[:3, 3] = shift, -shift, -0.5
-    columns = np.tile(np.array((0, cloud.shape[1]), dtype=np.int32), (cloud.shape[0], 1))
+    pose[:3, :3], pose[:3, 3] = tilted @ turned, (shift, -shift, -0.5)
+    return pose
+
+
+@st.composite
+def limits(draw, cloud):
+    """(H, 2) first column and column after the last to look at."""
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    columns = np.sort(random.integers(0, cloud.shape[1] + 1, (len(cloud), 2)), axis=1).astype(np.int32)
+    return columns if draw(st.booleans()) else np.tile(np.array((0, cloud.shape[1]), dtype=np.int32), (len(cloud), 1))
+
+
+@settings(max_examples=200)
+@given(data=st.data(), cloud=clouds(), workspace=st.sampled_from((None, WORKSPACE)), pose=poses())
+def test_points_runs_and_spans_are_those_found_one_by_one(data, cloud, workspace, pose):
+    columns = data.draw(limits(cloud))
     seen = object_points(raster_of(cloud), pose, workspace, columns, LOWEST, STEP)
-    points, runs, outside = plainly(cloud, pose[:3].astype(np.float32), workspace)
+    points, runs, outside = plainly(cloud, columns, pose[:3].astype(np.float32), workspace)
     assert seen.outside == outside
     assert seen.runs.tolist() == runs.tolist()
     np.testing.assert_allclose(seen.xyz, points, atol=1e-6)

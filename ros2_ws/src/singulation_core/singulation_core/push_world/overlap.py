@@ -111,6 +111,6 @@ def _clipped(outline: FloatArray, heights: FloatArray) -> FloatArray:
         following, next_height = outline[(k + 1) % len(outline)], heights[(k + 1) % len(outline)]
         if height <= 0.0:
             kept.append(vertex)
-        if (height <= 0.0) != (next_height <= 0.0):
+        if min(height, next_height) < 0.0 < max(height, next_height):
             kept.append(vertex + (following - vertex) * height / (height - next_height))
     return np.array(kept)

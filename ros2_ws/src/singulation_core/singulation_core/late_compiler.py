@@ -1,56 +1,30 @@
-"""Options of compiled functions that Numba hears of late, so that a first start compiles less.
+"""Numba's compiler, told some options late, so that a first start compiles less.
 
 Numba remembers what it found out about a call (which of some forty ways to add two numbers fits, what ``np.empty``
-compiles to) for each set of options anew. The options here matter only when machine code is made: without them until
-then, all functions share what is remembered. And a function that only others call needs no machine code of its own,
-and need not be optimised before it is part of one of them. Together this takes a sixth off the compiling of
+compiles to) for each set of options anew. The options here matter only when machine code is made: as long as it does
+not know them, all functions share what is remembered. And a function that only others call needs no machine code of its
+own, and need not be optimised before it is part of one of them. Together this takes a sixth off the compiling of
 singulation_perception, and its functions run as fast.
 
-Numba documents pipelines and passes of one's own ("Customizing the compiler"), but the methods of its code library that
-are replaced here are internal. So this is done with the versions that it was tried with; any other hears of the options
-at once and compiles longer.
+Numba documents pipelines and passes of one's own ("Customizing the compiler"), but what is replaced of its code library
+is internal.
 """
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
-from numba import version_info
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import AnalysisPass, PassManager, register_pass
 from numba.core.cpu import FastMathOptions
 from numba.core.typed_passes import IRLegalization
 
-_TRIED = ((0, 68),)
-_ANY_ORDER = {"reassoc", "contract"}
-
-
-class LateOptions(NamedTuple):
-    """What becomes of a function.
-
-    Args:
-        part: only compiled functions call it.
-        inline: it is written into its callers.
-        any_order: sums may be added up in any order, which makes vector instructions of them.
-        counting: it counts references to arrays, as a function that makes some must.
-    """
-
-    part: bool = False
-    inline: bool = False
-    any_order: bool = False
-    counting: bool = True
-
-
-def arguments(options: LateOptions) -> dict[str, Any]:
-    """Keyword arguments of ``numba.njit`` for these options."""
-    if version_info.short in _TRIED:
-        return {"pipeline_class": _pipeline(options)}
-    fastmath = _ANY_ORDER if options.any_order else False
-    return {"no_cpython_wrapper": options.part, "forceinline": options.inline, "fastmath": fastmath}
+from singulation_core.compile_options import ANY_ORDER, CompileOptions
 
 
 @cache
-def _pipeline(options: LateOptions) -> type[CompilerBase]:
+def late_compiler(options: CompileOptions) -> type[CompilerBase]:
+    """The compiler with these options, as ``pipeline_class`` of ``numba.njit``."""
 
     @register_pass(mutates_CFG=False, analysis_only=True)
     class Set(AnalysisPass):  # type: ignore[misc]  # Numba has no types
@@ -73,14 +47,14 @@ def _pipeline(options: LateOptions) -> type[CompilerBase]:
     return Late
 
 
-def _set(options: LateOptions, state: Any) -> None:
+def _set(options: CompileOptions, state: Any) -> None:
     flags = state.flags
     flags.forceinline = options.inline
     if options.part:
         flags.no_cpython_wrapper = True
         state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
     if options.any_order:
-        flags.fastmath = FastMathOptions(_ANY_ORDER)
+        flags.fastmath = FastMathOptions(ANY_ORDER)
         state.targetctx = state.targetctx.subtarget(fastmath=flags.fastmath)
     if not options.counting:
         flags.nrt = False

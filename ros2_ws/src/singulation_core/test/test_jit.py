@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
-from singulation_core import late_options
+from singulation_core import jit
 from singulation_core.jit import compiled_inline, compiled_maker, compiled_part, compiled_part_maker, compiled_sums
-from singulation_core.late_options import LateOptions
 
 
 @pytest.fixture(params=["a Numba that was tried", "another"])
 def version(request, monkeypatch):
     if request.param == "another":
-        monkeypatch.setattr(late_options, "_TRIED", ())
+        monkeypatch.setattr(jit, "_LATE", False)
 
 
 def made(decorator):
@@ -57,4 +56,4 @@ def test_sums_may_be_added_up_in_any_order_only_where_that_was_said():
 
 
 def test_the_numba_that_is_installed_was_tried():
-    assert "pipeline_class" in late_options.arguments(LateOptions())
+    assert jit._LATE
