@@ -17,6 +17,8 @@ from singulation_core import Arrangement, PlanarObject
 from singulation_core.polygon import FloatArray, signed_area
 from singulation_node.large_messages import keep_memory
 from singulation_perception import SegmentationParameters, segment_cloud, warm_up
+from singulation_perception.clouds import CloudField, CloudLayout, ScalarType
+from singulation_perception.decoding import decode_points
 
 SEED = 500_000
 OURS = "ours"
@@ -128,11 +130,19 @@ def _rivals(scene: Scene, pcl: PclRival | None, with_open3d: bool) -> dict[str, 
 
 
 def _ours(scene: Scene) -> Answer:
+    """From the bytes of the message and its layout."""
     parameters = SegmentationParameters(table_from_camera=scene.table_from_camera, workspace=AREA)
+    data, layout = scene.points.reshape(-1).view(np.uint8), _layout(scene)
     processor, wall = time.process_time(), time.perf_counter()
-    arrangement = segment_cloud(scene.points, parameters).arrangement
+    arrangement = segment_cloud(decode_points(data, layout), parameters).arrangement
     processor, wall = time.process_time() - processor, time.perf_counter() - wall
     return Answer(1e3 * processor, 1e3 * wall, len(arrangement), arrangement)
+
+
+def _layout(scene: Scene) -> CloudLayout:
+    height, width = scene.points.shape[:2]
+    fields = tuple(CloudField(name, 4 * place, ScalarType.FLOAT32) for place, name in enumerate("xyz"))
+    return CloudLayout(height, width, 12, 12 * width, fields)
 
 
 def _pcl(rival: PclRival, recipe: Recipe) -> Callable[[Scene], Answer]:
