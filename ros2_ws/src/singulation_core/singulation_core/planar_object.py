@@ -54,8 +54,16 @@ class PlanarObject:
         """
         _require(id, height, confidence)
         made = cls.__new__(cls)
-        values = outline._asdict() | {"id": id, "height": height, "point_count": point_count, "confidence": confidence}
-        made.__dict__.update(values)  # a frozen object is filled once
+        made.__dict__.update(  # a frozen object is filled once
+            id=id,
+            outline=outline.outline,
+            height=height,
+            point_count=point_count,
+            confidence=confidence,
+            centroid=outline.centroid,
+            bounding_radius=outline.bounding_radius,
+            area=outline.area,
+        )
         return made
 
     def moved(self, translation: ArrayLike, rotation: float = 0.0) -> "PlanarObject":

@@ -1,6 +1,7 @@
 """From one face to the blocks in it: seams that are seen, hidden parts, cuts that the outline suggests, outlines."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 
 import numpy as np
@@ -18,6 +19,7 @@ from singulation_perception.object_points import IntArray, ObjectPoints
 from singulation_perception.outlines import Outlines, outlines_of
 from singulation_perception.parameters import SegmentationParameters
 from singulation_perception.rings import Scale
+from singulation_perception.shapes import Shape
 from singulation_perception.splitting import Split, Suspects, split, split_seen
 from singulation_perception.surfaces import Faces
 
@@ -78,8 +80,8 @@ class FaceBlocks:
         outlines = outlines_of(rings, hulls, self._measures()[face])
         confidence = self._evidence(face, pieces, outlines).confidence.tolist()
         found: list[FoundBlock] = []
-        for k, members in groupby(range(len(pieces)), lambda i: pieces[i].face):
-            blocks = self._blocks(k, [i for i in members if outlines.is_polygon(i)], outlines, confidence)
+        for k, members in groupby(zip(pieces, outlines.drawn(), confidence, strict=True), lambda one: one[0].face):
+            blocks = self._blocks(k, [(*drawn, trust) for _, drawn, trust in members if drawn])
             dropped["shapeless"] += not blocks
             found += blocks
         return found
@@ -111,17 +113,24 @@ class FaceBlocks:
         measures[:, 1], measures[:, 2], measures[:, 3] = pitch, self.parameters.edge_growth * pitch, roughness
         return measures
 
-    def _blocks(self, k: int, members: list[int], outlines: Outlines, confidence: list[float]) -> list[FoundBlock]:
-        """Blocks of face k, whose outlines are the ``members`` among all; none if its rim gives no polygon."""
-        if not members:
-            return []
-        drawn = [outlines.outline(i) for i in members]
-        counts, heights = self._shares(k, drawn)
-        surface = int(self.faces.surface[self.maps.faces[k]])
+    def _blocks(self, k: int, parts: list[tuple[FloatArray, Shape, float]]) -> list[FoundBlock]:
+        """Blocks of face k, by outline, shape and confidence of its parts; none if its rim gives no polygon."""
+        count, height, surface = self._whole[k]
+        if len(parts) == 1:
+            outline, shape, confidence = parts[0]
+            return [FoundBlock(outline, shape, height, count, confidence, surface, k)]
+        shared = self._shares(k, [outline for outline, _, _ in parts]) if parts else []
         return [
-            FoundBlock(outline, outlines.shape(i), height, count, confidence[i], surface, k)
-            for i, outline, count, height in zip(members, drawn, counts, heights, strict=True)
+            FoundBlock(outline, shape, height, count, confidence, surface, k)
+            for (outline, shape, confidence), (count, height) in zip(parts, shared, strict=True)
         ]
+
+    @cached_property
+    def _whole(self) -> list[tuple[int, float, int]]:
+        """Points, height [m] and surface of each face."""
+        faces = self.maps.faces
+        heights = np.maximum(self.faces.height[faces], 0.0).tolist()
+        return list(zip(self.faces.count[faces].tolist(), heights, self.faces.surface[faces].tolist(), strict=True))
 
     def _pieces(self, k: int, suspects: Suspects | None) -> list[_Piece]:
         """The parts of one face that may be blocks."""
@@ -142,12 +151,10 @@ class FaceBlocks:
             pieces += [_Piece(k, piece, _UNKNOWN, *_doubts(piece, result, scale)) for piece in result.pieces]
         return pieces
 
-    def _shares(self, k: int, outlines: list[FloatArray]) -> tuple[list[int], list[float]]:
-        face = self.maps.faces[k]
-        if len(outlines) < 2:
-            return [int(self.faces.count[face])], [max(0.0, float(self.faces.height[face]))]
+    def _shares(self, k: int, outlines: list[FloatArray]) -> list[tuple[int, float]]:
+        """Points and height of each of several parts of face k."""
         counts, heights = shares(self.maps.image(k), self.seen.xyz, outlines)
-        return [int(count) for count in counts], [max(0.0, float(height)) for height in heights]
+        return list(zip(counts.tolist(), np.maximum(heights, 0.0).tolist(), strict=True))
 
     def _evidence(self, k: IntArray, pieces: list[_Piece], outlines: Outlines) -> Evidence:
         """For the outlines of all pieces, which are parts of faces ``k``."""

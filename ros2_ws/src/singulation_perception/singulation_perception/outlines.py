@@ -40,17 +40,13 @@ class Outlines:
     box: FloatArray
     shapes: FloatArray
 
-    def is_polygon(self, k: int) -> bool:
-        """Whether ring k has an area."""
-        return bool(self.first[k + 1] - self.first[k] >= 3)
-
-    def outline(self, k: int) -> FloatArray:
-        """(k, 2) outline of ring k [m]."""
-        return self.corners[self.first[k] : self.first[k + 1]]
-
-    def shape(self, k: int) -> Shape:
-        """Of the outline of ring k."""
-        return Shape(*self.shapes[k].tolist())
+    def drawn(self) -> list[tuple[FloatArray, Shape] | None]:
+        """(k, 2) outline of each ring [m] and its shape; None for a ring without an area."""
+        first, shapes = self.first.tolist(), self.shapes.tolist()
+        return [
+            (self.corners[begin:end], Shape(*shape)) if end - begin >= 3 else None
+            for begin, end, shape in zip(first, first[1:], shapes, strict=False)
+        ]
 
 
 def outlines_of(rings: list[FloatArray], hulls: list[IntArray], measures: FloatArray) -> Outlines:
