@@ -1,6 +1,7 @@
 """Entities that go away and callbacks that throw do not end the spinning."""
 
 import threading
+import time
 
 import pytest
 from rclpy.executors import MultiThreadedExecutor
@@ -89,3 +90,23 @@ def test_what_a_callback_throws_is_told_and_the_next_one_is_called(node, spin):
     _, failures = spin()
     wait_until(lambda: len(calls) > 3)
     assert [str(failure) for failure in failures] == ["the first time only"]
+
+
+class Hasty:
+    """An executor that always finds something that was handed out already."""
+
+    turns = 0
+
+    def spin_once(self, timeout_sec):
+        self.turns += 1
+
+
+def test_other_threads_get_their_turn_while_there_is_nothing_new():
+    executor, stop = Hasty(), threading.Event()
+    began = time.monotonic()
+    thread = threading.Thread(target=spin_until, args=(executor, stop, pytest.fail))
+    thread.start()
+    wait_until(lambda: executor.turns > 100, what="some turns")
+    stop.set()
+    thread.join(timeout=10.0)
+    assert executor.turns <= 1 + (time.monotonic() - began) / 5e-5
