@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from singulation_core import jit
-from singulation_core.jit import compiled_inline, compiled_maker, compiled_part, compiled_part_maker, compiled_sums
+from singulation_core.jit import (
+    compiled,
+    compiled_inline,
+    compiled_maker,
+    compiled_part,
+    compiled_part_maker,
+    compiled_part_sums,
+    compiled_sums,
+)
 
 
 @pytest.fixture(params=["a Numba that was tried", "another"])
@@ -31,13 +39,27 @@ def made(decorator):
 
     @decorator
     def total(count, x):
-        values = filled(count, x)
+        return summed(filled(count, x))
+
+    def summed(values):
         result = 0.0
         for k in range(len(values)):
             result += values[k]
         return result
 
+    summed = compiled_part_sums(summed) if decorator is compiled_sums else compiled_part_maker(summed)
     return total
+
+
+@pytest.mark.usefixtures("version")
+def test_what_only_writes_into_arrays_of_its_caller_is_called_from_python():
+    def double(values):
+        for k in range(len(values)):
+            values[k] *= 2.0
+
+    values = np.array((1.0, 2.0))
+    compiled(double)(values)
+    assert values.tolist() == [2.0, 4.0]
 
 
 @pytest.mark.usefixtures("version")

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from singulation_core import InvalidInputError, PlanarObject
+from singulation_core.polygon import measured_outline
 
 RECTANGLE = np.array(((0.0, 0.0), (0.04, 0.0), (0.04, 0.02), (0.0, 0.02)))
 
@@ -63,3 +64,27 @@ def test_malformed_blocks_are_refused_by_name(values, text):
     with pytest.raises(InvalidInputError, match=text):
         PlanarObject(**{"id": 5, "outline": RECTANGLE, **values})
     assert PlanarObject(5, RECTANGLE).id == 5
+
+
+def test_an_object_of_a_measured_outline_is_the_one_of_the_outline():
+    block = PlanarObject.measured(7, measured_outline(RECTANGLE), 0.03, 12, 0.5)
+    plain = PlanarObject(7, RECTANGLE, 0.03, 12, 0.5)
+    assert vars(block).keys() == vars(plain).keys()
+    for name, value in vars(plain).items():
+        np.testing.assert_array_equal(getattr(block, name), value)
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ((-1, 0.02, 1, 0.5), "object -1: id out of range, need 0 <= id < 2**32"),
+        ((3, math.nan, 1, 0.5), "object 3: height nan m, need a finite one >= 0"),
+        ((3, 0.02, 1, 1.5), "object 3: confidence 1.5, need 0..1"),
+    ],
+)
+def test_a_measured_outline_does_not_excuse_the_rest(values, text):
+    number, *others = values
+    with pytest.raises(InvalidInputError) as caught:
+        PlanarObject.measured(number, measured_outline(RECTANGLE), *others)
+    assert str(caught.value) == f"INVALID_INPUT (5): {text}"
+    assert PlanarObject.measured(3, measured_outline(RECTANGLE), 0.02, 1, 0.5).id == 3

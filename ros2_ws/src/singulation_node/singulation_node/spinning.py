@@ -7,7 +7,7 @@ from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-_BREATH = 5e-5  # s
+_BREATH = 5e-5  # s between two turns, long enough for a thread to begin
 _WAKE = 0.2  # s; an event set by a signal handler is noticed within this time even while nothing happens
 
 
