@@ -34,6 +34,7 @@ from singulation_sim.sim_settings import SimSettings
 from singulation_sim.stepper import Stepper
 
 _OWN_START = 1.0  # s; own time begins here, because a stamp of 0 means "none"
+_LAST_FRAME = 5.0  # s that an ending node waits for a frame to be published
 _PATIENCE = 20.0  # times the scan time that a trigger waits before it gives up
 
 
@@ -69,9 +70,14 @@ class SimCell(Node):
         )
 
     def destroy_node(self) -> None:
-        """Stop time, then the node."""
+        """Stop time, let a frame that is on its way go out, then destroy the node."""
         self._stepper.stop()
-        super().destroy_node()
+        gone = self._camera_lock.acquire(timeout=_LAST_FRAME)
+        try:
+            super().destroy_node()
+        finally:
+            if gone:
+                self._camera_lock.release()
 
     def _subscribe(self) -> None:
         for arm in ARMS:
@@ -131,8 +137,13 @@ class SimCell(Node):
 
     @guarded
     def _free_run(self) -> None:
-        if not self._camera_lock.locked():
+        if self._camera_lock.locked():
+            return
+        try:
             self._scan()
+        except SingulationError:
+            if not self._stepper.stopped:
+                raise
 
     def _scan(self) -> int:
         """Take a frame and publish it when the scan is over; the number of measured points.

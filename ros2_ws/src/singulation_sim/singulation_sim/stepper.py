@@ -58,14 +58,19 @@ class Stepper:
         if self._thread.ident is not None and self._thread is not threading.current_thread():
             self._thread.join(timeout=5.0)
 
+    @property
+    def stopped(self) -> bool:
+        """Whether time was stopped for good."""
+        return self._stop.is_set()
+
     def wait_for(self, moment: float, timeout: float) -> bool:
         """Wait with the lock held until simulated time has reached ``moment`` [s]; False if it did not come."""
-        reached = self._lock.wait_for(lambda: self._cell.now >= moment or self._stop.is_set(), timeout)
-        return reached and not self._stop.is_set()
+        reached = self._lock.wait_for(lambda: self._cell.now >= moment or self.stopped, timeout)
+        return reached and not self.stopped
 
     def _run(self) -> None:
         origin = self._clock()
-        while not self._stop.is_set():
+        while not self.stopped:
             self._elapsed += self._interval
             due = origin + self._elapsed / self._speed
             late = self._clock() - due

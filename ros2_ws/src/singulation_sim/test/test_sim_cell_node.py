@@ -1,5 +1,6 @@
 """The node ``sim_cell`` over DDS."""
 
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from typing import Any
@@ -164,14 +165,35 @@ def test_a_camera_can_run_freely_and_give_nan(make_desk: Callable[..., Desk]) ->
     assert not (points == 0.0).all()
 
 
+def test_a_frame_on_its_way_still_goes_out_when_the_node_ends(
+    ros_context: Any, capfd: pytest.CaptureFixture[str]
+) -> None:
+    desk = Desk(ros_context, speed=10.0, frame_period=1.0, scan_time=0.0)
+    render, rendering = desk.cell.cell.render, threading.Event()
+
+    def render_late(view: Any) -> Any:
+        rendering.set()
+        wait_until(lambda: desk.cell._stepper.stopped, what="the end of the node")
+        return render(view)
+
+    desk.cell.cell.render = render_late  # type: ignore[method-assign]
+    with spinning(desk.cell, desk.node):
+        assert rendering.wait(20.0)
+    assert "failed" not in capfd.readouterr().err
+
+
 def test_faults_and_reset(make_desk: Callable[..., Desk]) -> None:
     desk = make_desk(speed=10.0)
-    target = desk.send(-0.5, seconds=2.0)
-    wait_until(lambda: desk.joint(LEFT[1]) < target + 0.4, what="motion")
+    target = desk.send(-0.5, seconds=200.0)  # 20 s of real time: a late stop comes in time
+    wait_until(lambda: desk.joint(LEFT[1]) < target + 0.49, what="motion")
     assert desk.inject("emergency_stop").success
     wait_until(lambda: desk.driver.messages[-1].mode == DriverState.EMERGENCY_STOP, what="the stop on the topic")
     assert not desk.driver.messages[-1].motion_enabled
-    assert desk.joint(LEFT[1]) > target + 0.05
+    desk.states.wait(len(desk.states.messages) + 20)
+    stopped = desk.joint(LEFT[1])
+    desk.states.wait(len(desk.states.messages) + 200)  # going on it would be 5 mrad further
+    assert desk.joint(LEFT[1]) == pytest.approx(stopped, abs=1e-3)
+    assert stopped > target + 0.05
     unknown = desk.inject("earthquake")
     assert not unknown.success
     assert "emergency_stop" in unknown.message
