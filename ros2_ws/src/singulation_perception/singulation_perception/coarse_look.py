@@ -93,17 +93,21 @@ def _mark(
 def heights(cloud: Raster, row: int, first: int, pose: NDArray[np.float32], values: Values, count: int) -> None:
     """Heights above ``table`` of ``count`` points of a row.
 
-    Unsigned indices and a known step make vector instructions of it.
+    A known step makes vector instructions of it.
     """
-    numbers, point_step = cloud.numbers, np.uintp(cloud.point_step)
-    a, b, c, d = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
-    one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
-    start = np.uintp(row * cloud.row_step + first * cloud.point_step)
-    if point_step == three:
-        for i in range(count):
-            at = start + three * np.uintp(i)
-            values[i] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d
+    start = row * cloud.row_step + first * cloud.point_step
+    if cloud.point_step == 3:
+        _levels(cloud.numbers, np.uintp(start), np.uintp(3), pose, values, count)
     else:
-        for i in range(count):
-            at = start + point_step * np.uintp(i)
-            values[i] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d
+        _levels(cloud.numbers, np.uintp(start), np.uintp(cloud.point_step), pose, values, count)
+
+
+@compiled_part_sums
+def _levels(
+    numbers: Values, start: np.uintp, point_step: np.uintp, pose: NDArray[np.float32], values: Values, count: int
+) -> None:
+    a, b, c, d = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
+    one, two = np.uintp(1), np.uintp(2)
+    for i in range(count):
+        at = start + point_step * np.uintp(i)
+        values[i] = numbers[at] * a + numbers[at + one] * b + numbers[at + two] * c + d

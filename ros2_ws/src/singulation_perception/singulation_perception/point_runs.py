@@ -28,29 +28,39 @@ def locate(
 
     Into a flat array and with a known step, which makes vector instructions of it.
     """
-    seen, point_step = cloud.numbers, np.uintp(cloud.point_step)
-    start, at = np.uintp(row * cloud.row_step + column * cloud.point_step), np.uintp(3 * count)
-    one, two, three = np.uintp(1), np.uintp(2), np.uintp(3)
+    start = np.uintp(row * cloud.row_step + column * cloud.point_step)
+    if cloud.point_step == 3:
+        return _located(cloud.numbers, start, np.uintp(3), pose, limits, height, first, length, numbers, count)
+    return _located(
+        cloud.numbers, start, np.uintp(cloud.point_step), pose, limits, height, first, length, numbers, count
+    )
+
+
+@compiled_part_sums
+def _located(
+    seen: Values,
+    start: np.uintp,
+    point_step: np.uintp,
+    pose: NDArray[np.float32],
+    limits: NDArray[np.float32],
+    height: Values,
+    first: np.uintp,
+    length: int,
+    numbers: Values,
+    count: int,
+) -> int:
+    at, one, two, three = np.uintp(3 * count), np.uintp(1), np.uintp(2), np.uintp(3)
     xa, xb, xc, xd = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]  # read once: what is written might be theirs
     ya, yb, yc, yd = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
     x_min, x_max, y_min, y_max = limits[0], limits[1], limits[2], limits[3]
     inside = 0
-    if point_step == three:
-        for k in range(length):
-            i = np.uintp(k)
-            p, to = start + three * i, at + three * i
-            a, b, c = seen[p], seen[p + one], seen[p + two]
-            x, y = a * xa + b * xb + c * xc + xd, a * ya + b * yb + c * yc + yd
-            numbers[to], numbers[to + one], numbers[to + two] = x, y, height[first + i]
-            inside += (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
-    else:
-        for k in range(length):
-            i = np.uintp(k)
-            p, to = start + point_step * i, at + three * i
-            a, b, c = seen[p], seen[p + one], seen[p + two]
-            x, y = a * xa + b * xb + c * xc + xd, a * ya + b * yb + c * yc + yd
-            numbers[to], numbers[to + one], numbers[to + two] = x, y, height[first + i]
-            inside += (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
+    for k in range(length):
+        i = np.uintp(k)
+        p, to = start + point_step * i, at + three * i
+        a, b, c = seen[p], seen[p + one], seen[p + two]
+        x, y = a * xa + b * xb + c * xc + xd, a * ya + b * yb + c * yc + yd
+        numbers[to], numbers[to + one], numbers[to + two] = x, y, height[first + i]
+        inside += (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
     return inside
 
 
