@@ -14,6 +14,7 @@ from singulation_msgs.msg import Arrangement as ArrangementMsg
 from singulation_msgs.srv import PlanPush
 from std_srvs.srv import Trigger
 
+from singulation_bringup.asking_node import accepted
 from singulation_bringup.policy_choice import options_towards
 from singulation_core import Arrangement, ContactMode, Push, ResultCode, SingulationError, conversions
 from singulation_node.action_client import PatientActionClient
@@ -213,10 +214,7 @@ class RosCell:
             raise SingulationError(
                 ResultCode.PUSH_FAILED, f"execute_push did not answer a goal within {self._timeouts.plan} s"
             )
-        handle = sent.result()
-        if not handle.accepted:
-            raise SingulationError(ResultCode.REJECTED, "the executor rejected the goal; its log says why")
-        return handle
+        return accepted(sent, "execute_push")
 
     def _see_through(self, handle: Any) -> None:
         """Wait for the end of a push; nothing is left moving behind.

@@ -14,10 +14,10 @@ from typing import Any
 
 from singulation_msgs.action import Singulate
 
+from singulation_bringup.asking_node import accepted
 from singulation_bringup.commands.command_node import CommandNode
 from singulation_bringup.commands.status import outcome_text
 from singulation_core import ResultCode, SingulationError, contact_mode, conversions
-from singulation_node.action_client import PatientActionClient
 from singulation_node.main import plain_arguments
 from singulation_planner import POLICIES
 
@@ -35,14 +35,10 @@ def singulate(command: CommandNode, goal: Any, timeout: float) -> Any:
             the goal, ``CANCELLED`` on Ctrl-C, once the goal has ended.
     """
     news: list[Any] = []
-    client = PatientActionClient(command.node, Singulate, "singulate")
-    command.wait(client.server_is_ready, timeout, "action singulate")
-    sent = client.send_goal_async(goal, feedback_callback=lambda message: news.append(message.feedback))
+    sent = command.send_goal(Singulate, "singulate", goal, ready=timeout, feedback=news.append)
     try:
         command.wait(sent.done, timeout, "answer of singulate")
-        if not sent.result().accepted:
-            raise SingulationError(ResultCode.REJECTED, "singulate_node rejected the goal; its log says why")
-        ended, shown = sent.result().get_result_async(), -1
+        ended, shown = accepted(sent, "singulate").get_result_async(), -1
         while not ended.done():
             command.wait(lambda: ended.done() or news, _PER_PUSH, "the next push")
             shown = _show(news, shown)

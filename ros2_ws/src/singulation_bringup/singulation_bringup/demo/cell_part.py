@@ -139,7 +139,7 @@ class CellPart:
             policy=options.policy,
             contact_mode=conversions.contact_mode_to_msg(options.contact_mode),
         )
-        result = observer.action(Singulate, "singulate", goal, lambda feedback: None, _START)
+        result = observer.action(Singulate, "singulate", goal, _START)
         say("look -> plan -> push -> look again")
         limit = _START + _PER_PUSH * (options.max_pushes + 1)
         observer.wait(lambda: self._show_outcomes() or result() is not None, limit, "singulate")

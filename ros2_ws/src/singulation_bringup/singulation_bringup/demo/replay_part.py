@@ -76,7 +76,7 @@ class ReplayPart:
     def _frame(self, number: int, source: str, observer: Observer) -> None:
         finished = _finished(observer)
         known = len(self._objects)
-        observer.call(Trigger, "replay_clouds/step", Trigger.Request())
+        observer.call(Trigger, "replay_clouds/step", Trigger.Request(), ready=_FRAME, answer=_FRAME)
         observer.wait(lambda: len(self._objects) > known or _finished(observer) > finished, _FRAME, f"cloud {number}")
         if len(self._objects) == known:
             code, text = _rejection(observer)
@@ -114,7 +114,7 @@ def _plan(observer: Observer, message: Any, options: DemoOptions) -> tuple[Push 
     request = PlanPush.Request(
         arrangement=message, policy=options.policy, contact_mode=conversions.contact_mode_to_msg(options.contact_mode)
     )
-    answer = observer.call(PlanPush, "plan_push", request)
+    answer = observer.call(PlanPush, "plan_push", request, ready=_FRAME, answer=_FRAME)
     code = ResultCode(answer.code)
     if code is ResultCode.UNKNOWN_POLICY:  # no cloud will change that
         raise SingulationError(code, answer.message)
