@@ -64,7 +64,7 @@ def program(ros_context):
 
 
 def test_a_service_is_asked_and_one_that_is_missing_is_named(cell, program):
-    with pytest.raises(SingulationError, match=r"service /stop: nothing within 0\.1 s") as caught:
+    with pytest.raises(SingulationError, match=r"service stop: nothing within 0\.1 s") as caught:
         program.call(Trigger, "stop", Trigger.Request(), ready=0.1, answer=20.0)
     assert caught.value.code is ResultCode.TIMEOUT
     assert program.call(Trigger, "halt", Trigger.Request(), ready=20.0, answer=20.0).message == "stands"

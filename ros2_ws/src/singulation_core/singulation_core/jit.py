@@ -54,8 +54,9 @@ def compiled_part_maker(function: Function) -> Function:
 
 
 def compiled_part_sums(function: Function) -> Function:
-    """As ``compiled_sums``, for a function that only compiled ones call; it is written into its callers, so that a number
-    known there, such as the words between two points, is known inside.
+    """As ``compiled_sums``, for a function that only compiled ones call; it is written into its callers.
+
+    A number that is known there, such as the words between two points, is then known inside.
     """
     return _compiled(function, CompileOptions(part=True, inline=True, any_order=True))
 
