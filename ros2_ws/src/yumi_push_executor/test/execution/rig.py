@@ -143,3 +143,13 @@ class Rig:
         """After whatever happened the next push works."""
         self.heal()
         assert self.run().code is ResultCode.OK
+
+
+def set_arm(name="left", **values):
+    """An event that changes an arm of the rig."""
+    return lambda rig, _: [setattr(rig.arms[name], key, value) for key, value in values.items()]
+
+
+def set_rig(**values):
+    """An event that changes the rig."""
+    return lambda rig, _: [setattr(rig, key, value) for key, value in values.items()]
