@@ -42,6 +42,7 @@ class Recipe:
 
 RECIPES = {
     "voxel grid 2 mm": Recipe(0.002, 0.004, 20),
+    "voxel grid 2 mm, from the message": Recipe(0.002, 0.004, 20, from_message=True),
     "voxel grid 2 mm, cropped by axes": Recipe(0.002, 0.004, 20, pass_through=True),
     "voxel grid 2 mm, cropped by axes, from the message": Recipe(
         0.002, 0.004, 20, pass_through=True, from_message=True
