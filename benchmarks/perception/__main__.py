@@ -119,12 +119,15 @@ def _options() -> argparse.Namespace:
     add("--scenes", type=int, default=0, help="scenes of each kind (default: what suits the part)")
     add("--rounds", type=int, default=5, help="of each measurement of time (default %(default)s)")
     add("--clouds", nargs="+", type=Path, default=[], metavar="FILE", help="recorded clouds (PCD, PLY) to look at too")
-    add("--gigabytes", type=int, default=4, help="largest bag of the part replay (default %(default)s)")
+    add("--gigabytes", type=int, default=4, help="largest bag of the part replay, at least 2 (default %(default)s)")
     add("--without-pcl", action="store_true", help="no rival in C++, on machines without libpcl-dev")
     add("--without-open3d", action="store_true", help="part speed without Open3D, which takes longest")
     add("--resolutions", nargs="+", choices=list(RESOLUTIONS), default=list(RESOLUTIONS), help="of speed, clusters")
     add("--out", type=Path, default=Path("bench_results/perception"), help="folder (default %(default)s)")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if not (options.gigabytes >= 2):  # half of it is the memory that the process may have
+        parser.error(f"--gigabytes {options.gigabytes}: need at least 2, a cloud of 38 MB takes some 0.6 GB to play")
+    return options
 
 
 if __name__ == "__main__":
