@@ -6,6 +6,8 @@ ros2 launch singulation_bringup cell.launch.py cell_file:=my_cell.yaml          
 ros2 launch singulation_bringup cell.launch.py cell_file:=my_cell.yaml dry_run:=false     the robot pushes when asked
 """
 
+from typing import Any
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition, UnlessCondition
@@ -39,7 +41,7 @@ ROBOTS = ["abb_robot_driver", "abb_yumi_ros2", "kth_yumi"]
 SPEEDS = ["first_push", "slow", "full"]
 
 
-def arguments():
+def arguments() -> list[DeclareLaunchArgument]:
     """Launch arguments, as ``ros2 launch singulation_bringup cell.launch.py --show-args`` lists them."""
     points = PythonExpression([str(POINTS), "['", LaunchConfiguration("camera"), "']"])
     return [
@@ -92,22 +94,22 @@ def arguments():
     ]
 
 
-def config(name):
+def config(name: str) -> list[Any]:
     """A file of the configuration."""
     return [LaunchConfiguration("config"), f"/{name}"]
 
 
-def chosen(folder, argument):
+def chosen(folder: str, argument: str) -> list[Any]:
     """The file of the configuration that a launch argument names."""
     return [LaunchConfiguration("config"), f"/{folder}/", LaunchConfiguration(argument), ".yaml"]
 
 
-def below(argument, name):
+def below(argument: str, name: str) -> list[Any]:
     """A name below the one a launch argument gives."""
     return [LaunchConfiguration(argument), f"/{name}"]
 
 
-def eyes():
+def eyes() -> list[Node]:
     """Perception and planner, and the camera's trigger where it has a type of its own."""
     return [
         Node(
@@ -140,7 +142,7 @@ def eyes():
     ]
 
 
-def robot():
+def robot() -> list[Node]:
     """What the robot's drivers say, in the suite's words; and its grippers."""
     with_rws = IfCondition(NotEqualsSubstitution(LaunchConfiguration("rws"), ""))
     services = [
@@ -178,7 +180,7 @@ def robot():
     ]
 
 
-def hands():
+def hands() -> list[Node]:
     """Either what shows motions, or what orders them."""
     motion = [config("executor_node.yaml"), chosen("robots", "robot"), chosen("speeds", "speeds"), CELL]
     return [
@@ -218,7 +220,7 @@ def hands():
     ]
 
 
-def start():
+def start() -> list[Node]:
     """Configures and activates in order, and stops before the robot if the camera does not see the table."""
     trigger = PythonExpression(["'trigger_frame' if '", LaunchConfiguration("camera"), "' == 'phoxi_official' else ''"])
     autostart = LaunchConfiguration("autostart")
@@ -244,7 +246,7 @@ def start():
     ]
 
 
-def displays():
+def displays() -> list[Node]:
     """RViz or Foxglove with the robot, the table and the camera in place."""
     shown = IfCondition(OrSubstitution(LaunchConfiguration("rviz"), LaunchConfiguration("foxglove")))
     urdf = PathJoinSubstitution([FindPackageShare("yumi_push_executor"), "urdf", "yumi.urdf"])
@@ -284,6 +286,6 @@ def displays():
     ]
 
 
-def generate_launch_description():
+def generate_launch_description() -> LaunchDescription:
     """Called by ``ros2 launch``."""
     return LaunchDescription([*arguments(), *eyes(), *robot(), *hands(), *start(), *displays()])

@@ -3,6 +3,8 @@
 ros2 launch singulation_bringup replay.launch.py bag:=/path/to/rosbag2
 """
 
+from typing import Any
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
@@ -14,7 +16,7 @@ SHARE = FindPackageShare("singulation_bringup")
 CELL = LaunchConfiguration("cell_file")
 
 
-def arguments():
+def arguments() -> list[DeclareLaunchArgument]:
     """Launch arguments, as ``ros2 launch singulation_bringup replay.launch.py --show-args`` lists them."""
     return [
         DeclareLaunchArgument(
@@ -40,12 +42,12 @@ def arguments():
     ]
 
 
-def config(name):
+def config(name: str) -> list[Any]:
     """A file of the configuration."""
     return [LaunchConfiguration("config"), f"/{name}"]
 
 
-def nodes():
+def nodes() -> list[Node]:
     """Perception, planner and the recording, which waits until perception listens."""
     return [
         Node(
@@ -105,6 +107,6 @@ def nodes():
     ]
 
 
-def generate_launch_description():
+def generate_launch_description() -> LaunchDescription:
     """Called by ``ros2 launch``."""
     return LaunchDescription([*arguments(), *nodes()])

@@ -4,6 +4,8 @@ ros2 launch singulation_bringup sim_cell.launch.py objects:=5 seed:=1
 ros2 action send_goal /singulate singulation_msgs/action/Singulate "{max_pushes: 10, min_gap: 0.012}"
 """
 
+from typing import Any
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
@@ -23,7 +25,7 @@ CELL = LaunchConfiguration("cell_file")
 SIM_TIME = {"use_sim_time": True}
 
 
-def arguments():
+def arguments() -> list[DeclareLaunchArgument]:
     """Launch arguments, as ``ros2 launch singulation_bringup sim_cell.launch.py --show-args`` lists them."""
     return [
         DeclareLaunchArgument(
@@ -53,12 +55,12 @@ def arguments():
     ]
 
 
-def config(name):
+def config(name: str) -> list[Any]:
     """A file of the configuration."""
     return [LaunchConfiguration("config"), f"/{name}"]
 
 
-def nodes():
+def nodes() -> list[Node]:
     """The cell and the suite; all live in the cell's time."""
     # Faster than real time, the same computing takes more of the simulated seconds.
     patience = ParameterValue(PythonExpression(["5.0 + 15.0 * ", LaunchConfiguration("speed")]), value_type=float)
@@ -116,7 +118,7 @@ def nodes():
     ]
 
 
-def start():
+def start() -> list[Node]:
     """Configures and activates in order, and stops before the robot if the camera does not see the table."""
     return Node(
         package="singulation_bringup",
@@ -129,7 +131,7 @@ def start():
     )
 
 
-def displays():
+def displays() -> list[Node]:
     """RViz or Foxglove with the robot, the table and the camera in place."""
     shown = IfCondition(OrSubstitution(LaunchConfiguration("rviz"), LaunchConfiguration("foxglove")))
     urdf = PathJoinSubstitution([FindPackageShare("yumi_push_executor"), "urdf", "yumi.urdf"])
@@ -168,6 +170,6 @@ def displays():
     ]
 
 
-def generate_launch_description():
+def generate_launch_description() -> LaunchDescription:
     """Called by ``ros2 launch``."""
     return LaunchDescription([*arguments(), *nodes(), start(), *displays()])

@@ -33,15 +33,15 @@ class Cell(Node):
 
     def __init__(self, context):
         super().__init__("cell", context=context)
-        self.wants, self.asked = False, threading.Event()
+        self.wants, self.answers = False, threading.Event()
         self.create_service(Trigger, "halt", self.halt)
         self.said = self.create_publisher(String, "said", STATE)
         choose = {"goal_callback": lambda _: GoalResponse.ACCEPT if self.wants else GoalResponse.REJECT}
         self.server = ActionServer(self, Singulate, "singulate", self.execute, **choose)
 
     def halt(self, request, response):
+        self.answers.wait(20.0)
         response.success, response.message = True, "stands"
-        self.asked.set()
         return response
 
     def execute(self, handle):
@@ -63,12 +63,23 @@ def program(ros_context):
         yield made
 
 
-def test_a_service_is_asked_and_one_that_is_missing_is_named(cell, program):
+def test_a_service_is_asked_and_one_that_is_missing_or_silent_is_named(cell, program):
     with pytest.raises(SingulationError, match=r"service stop: nothing within 0\.1 s") as caught:
         program.call(Trigger, "stop", Trigger.Request(), ready=0.1, answer=20.0)
     assert caught.value.code is ResultCode.TIMEOUT
+    with pytest.raises(SingulationError, match=r"answer of halt: nothing within 0\.1 s") as caught:
+        program.call(Trigger, "halt", Trigger.Request(), ready=20.0, answer=0.1)
+    assert caught.value.code is ResultCode.TIMEOUT
+    cell.answers.set()
     assert program.call(Trigger, "halt", Trigger.Request(), ready=20.0, answer=20.0).message == "stands"
-    assert cell.asked.is_set()
+
+
+def test_an_action_that_is_missing_is_named_and_another_found(cell, program):
+    with pytest.raises(SingulationError, match=r"action separate: nothing within 0\.1 s") as caught:
+        program.send_goal(Singulate, "separate", Singulate.Goal(), ready=0.1)
+    assert caught.value.code is ResultCode.TIMEOUT
+    sent = program.send_goal(Singulate, "singulate", Singulate.Goal(), ready=20.0)
+    assert program.wait(sent.done, 20.0, "an answer")
 
 
 def test_a_callback_that_throws_hears_the_next_message(cell, program):
@@ -83,7 +94,8 @@ def test_a_callback_that_throws_hears_the_next_message(cell, program):
     program.wait(lambda: cell.said.get_subscription_count() == 1, 20.0, "the subscription")
     for word in ("nonsense", "sense"):
         cell.said.publish(String(data=word))
-    program.wait(lambda: heard == ["nonsense", "sense"], 20.0, "both words")
+    program.wait(lambda: len(heard) == 2, 20.0, "both words")
+    assert heard == ["nonsense", "sense"]
 
 
 def test_a_goal_is_rejected_and_the_next_one_done(cell, program):

@@ -29,6 +29,7 @@ FOREIGN = {
 }
 # What launch and launch_ros of Jazzy have, as far as it is used here.
 KNOWN = {
+    "typing": {"Any"},
     "launch": {"LaunchDescription"},
     "launch.actions": {"DeclareLaunchArgument"},
     "launch.conditions": {"IfCondition", "UnlessCondition"},

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
-from rclpy.action import ActionServer, CancelResponse
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -37,7 +37,7 @@ class ScriptedCell(Node):
         self.stood_still, self.pushing = threading.Event(), threading.Event()
         self.lost_clouds, self.triggers, self.cancel_code = 0, 0, ResultCode.CANCELLED
         self.asked = []
-        self.stale, self.cleared, self.blocked = False, 0, False
+        self.stale, self.cleared, self.blocked, self.takes_pushes = False, 0, False, True
         group = ReentrantCallbackGroup()
         self.objects = self.create_publisher(ArrangementMsg, "objects", STATE)
         self.create_service(Trigger, "trigger_frame", self.trigger, callback_group=group)
@@ -49,6 +49,7 @@ class ScriptedCell(Node):
             "execute_push",
             self.execute,
             callback_group=group,
+            goal_callback=lambda _: GoalResponse.ACCEPT if self.takes_pushes else GoalResponse.REJECT,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
 
@@ -172,6 +173,15 @@ def test_the_arms_leave_the_view_at_the_start_and_after_a_push_that_failed(setti
     assert outcome(ask())[1].code == ResultCode.PUSH_FAILED
     assert setting[1].cleared == 1 + 1 + 2  # at the start, and after each of two failures
     setting[1].code = ResultCode.OK
+    expect_success(ask)
+
+
+def test_an_executor_that_takes_no_push_ends_the_goal(setting, ask):
+    setting[1].takes_pushes = False
+    status, result = outcome(ask())
+    assert (status, result.code) == (GoalStatus.STATUS_ABORTED, ResultCode.REJECTED)
+    assert "execute_push rejected the goal; its log says why" in result.message
+    setting[1].takes_pushes = True
     expect_success(ask)
 
 

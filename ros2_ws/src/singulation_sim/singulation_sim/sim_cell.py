@@ -157,7 +157,8 @@ class SimCell(Node):
             with self._lock:
                 view = self.cell.view()
                 if not self._stepper.wait_for(self.cell.now + settings.scan_time, patience):
-                    raise SingulationError(ResultCode.TIMEOUT, f"no frame: time stood still for {patience:.0f} s")
+                    why = "the node ends" if self._stepper.stopped else f"time stood still for {patience:.0f} s"
+                    raise SingulationError(ResultCode.TIMEOUT, f"no frame: {why}")
                 now = self.cell.now
             points = self.cell.render(view)
             self._outputs.publish_cloud(points, now)

@@ -17,7 +17,7 @@ from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from singulation_core import InvalidInputError
+from singulation_core import InvalidInputError, ResultCode, SingulationError
 from singulation_core.conversions import arrangement_from_msg, seconds_of
 from singulation_node.testing import Mailbox, call, ros_context, spinning, wait_until
 from singulation_sim.sim_cell import SimCell
@@ -180,6 +180,18 @@ def test_a_frame_on_its_way_still_goes_out_when_the_node_ends(
     with spinning(desk.cell, desk.node):
         assert rendering.wait(20.0)
     assert "failed" not in capfd.readouterr().err
+
+
+def test_a_scan_that_the_end_of_the_node_interrupts_is_no_failure(
+    ros_context: Any, capfd: pytest.CaptureFixture[str]
+) -> None:
+    desk = Desk(ros_context, frame_period=0.1, scan_time=10.0)
+    with spinning(desk.cell, desk.node):
+        wait_until(desk.cell._camera_lock.locked, what="the scan")
+    assert "failed" not in capfd.readouterr().err
+    with pytest.raises(SingulationError, match="no frame: the node ends") as caught:
+        desk.cell._scan()
+    assert caught.value.code is ResultCode.TIMEOUT
 
 
 def test_faults_and_reset(make_desk: Callable[..., Desk]) -> None:
